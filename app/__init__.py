@@ -1,0 +1,1 @@
+"""The command line and the workstation around the engine in `core`."""

@@ -1,0 +1,67 @@
+"""A frame: one image of the target with the projection that made it."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.arrays import Floats, frozen
+from core.geometry.projection import Projection
+
+Sensor = Literal["radar", "optical"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Frame:
+    """One image of the target.
+
+    Attributes:
+        amplitude: (rows, columns) float32, linear and not negative. Radar: row 0 is nearest the
+            radar, columns grow with cross-range.
+        projection: from target metres to (row, column) of this image.
+        time_s: time of the image since the pass began.
+        sensor: what took it.
+        row_spacing_m, column_spacing_m: size of a pixel on the target; None in perspective.
+        line_of_sight: (3,) unit vector from sensor to target, target frame.
+        row_resolution_m, column_resolution_m: −3 dB widths of the point response, None where
+            unknown.
+        label: what the frame is called where a person sees it.
+    """
+
+    amplitude: NDArray[np.float32]
+    projection: Projection
+    time_s: float
+    sensor: Sensor
+    line_of_sight: Floats
+    row_spacing_m: float | None = None
+    column_spacing_m: float | None = None
+    row_resolution_m: float | None = None
+    column_resolution_m: float | None = None
+    label: str = ""
+
+    def __post_init__(self) -> None:
+        amplitude = frozen(self.amplitude, np.float32, (None, None), "Frame amplitude")
+        if min(amplitude.shape, default=0) < 2:
+            raise ValueError(f"A frame needs at least 2 × 2 pixels, got {amplitude.shape}.")
+        if float(amplitude.min()) < 0:
+            raise ValueError("A frame holds amplitudes, which are not negative; take the modulus.")
+        object.__setattr__(self, "amplitude", amplitude)
+        line_of_sight = frozen(self.line_of_sight, np.float64, (3,), "Line of sight")
+        if abs(float(np.linalg.norm(line_of_sight)) - 1) > 1e-6:
+            raise ValueError(f"The line of sight must be a unit vector, got {line_of_sight}.")
+        object.__setattr__(self, "line_of_sight", line_of_sight)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(rows, columns)."""
+        rows, columns = self.amplitude.shape
+        return rows, columns
+
+    def decibels(self, *, floor_db: float = -200.0) -> NDArray[np.float32]:
+        """Return 20·log10 of the amplitude relative to the frame's peak, not below `floor_db`."""
+        peak = float(self.amplitude.max())
+        floor = 10 ** (floor_db / 20)
+        relative = self.amplitude / np.float32(peak if peak > 0 else 1.0)
+        level: NDArray[np.float32] = 20 * np.log10(np.maximum(relative, np.float32(floor)))
+        return level

@@ -1,0 +1,1 @@
+"""Frames of reference, lines of sight, projections and grids."""

@@ -1,0 +1,83 @@
+"""The voxel grid on which views vote."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.arrays import Floats, frozen
+
+MAX_VOXELS = 2**31
+"""Voxels that one in-memory volume may hold (2 GiB of one-byte votes)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class VoxelGrid:
+    """A regular grid of voxel centres in the target frame.
+
+    Attributes:
+        origin_m: (3,) centre of voxel (0, 0, 0), target frame.
+        spacing_m: distance between neighbouring centres, the same on all axes.
+        shape: number of voxels along x, y, z.
+    """
+
+    origin_m: Floats
+    spacing_m: float
+    shape: tuple[int, int, int]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "origin_m", frozen(self.origin_m, np.float64, (3,), "Grid origin"))
+        if not (np.isfinite(self.spacing_m) and self.spacing_m > 0):
+            raise ValueError(
+                f"Voxel spacing must be a positive length in metres, got {self.spacing_m}."
+            )
+        if len(self.shape) != 3 or min(self.shape) < 2:
+            raise ValueError(
+                f"A grid needs at least 2 voxels along each of 3 axes, got {self.shape}."
+            )
+        count = int(np.prod(self.shape, dtype=np.int64))
+        if count > MAX_VOXELS:
+            raise ValueError(
+                f"A grid of {self.shape} holds {count:,} voxels and its votes would need "
+                f"{count / 2**30:.1f} GiB; at most {MAX_VOXELS:,} are allowed. Use a larger spacing."
+            )
+
+    @classmethod
+    def cube(cls, *, side_m: float, spacing_m: float) -> "VoxelGrid":
+        """Return a grid centred on the origin of the target frame that spans `side_m` each way."""
+        if not (np.isfinite(side_m) and side_m > 0 and np.isfinite(spacing_m) and spacing_m > 0):
+            raise ValueError(
+                f"Grid side and voxel spacing must be positive metres, got {side_m} and {spacing_m}."
+            )
+        count = max(2, round(side_m / spacing_m))
+        origin = np.full(3, -0.5 * (count - 1) * spacing_m)
+        return cls(origin_m=origin, spacing_m=spacing_m, shape=(count, count, count))
+
+    @classmethod
+    def over(cls, *, lower_m: Floats, upper_m: Floats, spacing_m: float) -> "VoxelGrid":
+        """Return the smallest grid whose centres reach from `lower_m` to `upper_m`, both (3,)."""
+        extent = np.asarray(upper_m, dtype=np.float64) - np.asarray(lower_m, dtype=np.float64)
+        counts = np.maximum(np.ceil(extent / spacing_m - 1e-9).astype(int) + 1, 2)
+        return cls(
+            origin_m=np.asarray(lower_m, dtype=np.float64),
+            spacing_m=spacing_m,
+            shape=(int(counts[0]), int(counts[1]), int(counts[2])),
+        )
+
+    @property
+    def upper_m(self) -> Floats:
+        """(3,) centre of the last voxel, target frame."""
+        upper: Floats = self.origin_m + self.spacing_m * (np.array(self.shape) - 1)
+        return upper
+
+    def centres_m(self) -> Floats:
+        """Return all voxel centres, (nx, ny, nz, 3), target frame."""
+        index = np.stack(np.meshgrid(*map(np.arange, self.shape), indexing="ij"), axis=-1)
+        centres: Floats = self.origin_m + self.spacing_m * index
+        return centres
+
+    def index_to_target(self) -> Floats:
+        """Return the 4 × 4 homogeneous map from voxel indices to target metres."""
+        matrix = np.eye(4)
+        matrix[:3, :3] *= self.spacing_m
+        matrix[:3, 3] = self.origin_m
+        return matrix

@@ -1,0 +1,1 @@
+"""From outlines and projections to the visual hull and its surface."""

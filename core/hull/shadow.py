@@ -1,0 +1,79 @@
+"""The shadow rule: what a one-sided silhouette may carve.
+
+A radar lights only the side of the target that faces it; behind its first return, along range,
+the image is dark because the target shades itself. A background pixel may therefore carve only
+if no return lies nearer the radar in its cross-range cell. Filling the outline away from the
+radar says exactly that, and the vote engine needs to know nothing of it.
+"""
+
+from typing import Literal
+
+import numpy as np
+import shapely
+from shapely.geometry import Polygon
+
+from core.arrays import Floats
+from core.hull.view import View
+from core.silhouettes.silhouette import Silhouette, clockwise_area_px
+
+CarvingRule = Literal["shadow", "strict"]
+
+
+def carving_view(view: View, rule: CarvingRule) -> View:
+    """Return the view as it votes under `rule`.
+
+    "strict" is the paper's: the outline as it stands. "shadow" fills outlines that claim only
+    the lit side away from the radar, and leaves complete ones as they are.
+    """
+    if rule == "strict" or view.silhouette.claim == "complete" or view.silhouette.is_empty:
+        return view
+    return View(silhouette=filled_away_from_radar(view.silhouette), projection=view.projection)
+
+
+def filled_away_from_radar(silhouette: Silhouette) -> Silhouette:
+    """Return the silhouette joined with everything behind it along growing rows.
+
+    The filling reaches ten image heights past the last row, further than any grid.
+    """
+    rows = silhouette.image_shape[0]
+    far_row = 10.0 * rows + max(float(ring[:, 0].max()) for ring in silhouette.rings)
+    swept = [
+        shapely.polygons(_edge_shadows(ring, far_row))
+        for ring in silhouette.rings
+        if clockwise_area_px(ring) > 0
+    ]
+    outers = [Polygon(ring) for ring in silhouette.rings if clockwise_area_px(ring) > 0]
+    union = shapely.union_all([*outers, *np.concatenate(swept)])
+    return Silhouette(
+        rings=rings_of(union),
+        image_shape=silhouette.image_shape,
+        claim="complete",
+        component=silhouette.component,
+        provenance=f"{silhouette.provenance}, filled away from the radar".lstrip(", "),
+    )
+
+
+def _edge_shadows(ring: Floats, far_row: float) -> Floats:
+    """Return the quadrilaterals (n, 5, 2) between each edge and `far_row`."""
+    tail, head = ring, np.roll(ring, -1, axis=0)
+    keep = tail[:, 1] != head[:, 1]
+    tail, head = tail[keep], head[keep]
+    far = np.full(len(tail), far_row)
+    corners = [tail, head, np.column_stack([far, head[:, 1]]), np.column_stack([far, tail[:, 1]])]
+    quadrilaterals: Floats = np.stack([*corners, tail], axis=1)
+    return quadrilaterals
+
+
+def rings_of(geometry: shapely.Geometry) -> tuple[Floats, ...]:
+    """Return the rings of a polygonal geometry in (row, column): outer clockwise, holes not."""
+    rings: list[Floats] = []
+    for part in shapely.get_parts(geometry):
+        if part.geom_type != "Polygon" or part.is_empty:
+            continue
+        rings.append(_turned(np.asarray(part.exterior.coords)[:-1], clockwise=True))
+        rings += [_turned(np.asarray(hole.coords)[:-1], clockwise=False) for hole in part.interiors]
+    return tuple(rings)
+
+
+def _turned(ring: Floats, *, clockwise: bool) -> Floats:
+    return ring if (clockwise_area_px(ring) > 0) == clockwise else ring[::-1]

@@ -1,0 +1,1 @@
+"""Lengths, attitude and comparisons read off a hull."""

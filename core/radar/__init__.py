@@ -1,0 +1,1 @@
+"""From a waveform and a target to phase histories, coherent intervals and images."""

@@ -1,0 +1,76 @@
+"""The outline of the target in one frame."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from core.arrays import Floats, frozen
+
+Claim = Literal["lit side", "complete"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Silhouette:
+    """Rings of sub-pixel vertices around what was seen of the target.
+
+    Attributes:
+        rings: each (vertices, 2) as (row, column), not repeated at the end. Outer rings run
+            clockwise as seen on the image (rows down, columns right), holes counter-clockwise.
+        image_shape: (rows, columns) of the frame it was drawn in.
+        claim: "lit side" when the outline shows only what the sensor lit (radar), so that what
+            lies behind along range is unknown; "complete" when it is the whole outline.
+        component: label of the part of the target that it outlines.
+        provenance: how it came to be, for people to read.
+    """
+
+    rings: tuple[Floats, ...]
+    image_shape: tuple[int, int]
+    claim: Claim
+    component: str = "target"
+    provenance: str = ""
+
+    def __post_init__(self) -> None:
+        rings = tuple(
+            frozen(ring, np.float64, (None, 2), f"Ring {number} of the silhouette")
+            for number, ring in enumerate(self.rings)
+        )
+        for number, ring in enumerate(rings):
+            if len(ring) < 3:
+                raise ValueError(
+                    f"Ring {number} of the silhouette has {len(ring)} vertices; at least 3 needed."
+                )
+        if self.claim not in ("lit side", "complete"):
+            raise ValueError(f'A silhouette claims "lit side" or "complete", not "{self.claim}".')
+        object.__setattr__(self, "rings", rings)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing of the target was seen."""
+        return not self.rings
+
+    def area_px(self) -> float:
+        """Return the enclosed area in square pixels, holes taken out."""
+        return float(sum(clockwise_area_px(ring) for ring in self.rings))
+
+    def mask(self) -> NDArray[np.bool_]:
+        """Return a raster of the outline, (rows, columns), for display and morphology only.
+
+        It is cut at the pixel grid (1/256 pixel inside); votes never look at it.
+        """
+        raster = np.zeros(self.image_shape, dtype=np.uint8)
+        polygons = [np.round(ring[:, ::-1] * 256).astype(np.int32) for ring in self.rings]
+        if polygons:
+            cv2.fillPoly(raster, polygons, 1, lineType=cv2.LINE_8, shift=8)
+        return raster.astype(bool)
+
+
+def clockwise_area_px(ring: Floats) -> float:
+    """Return the signed area of a ring (vertices, 2) in square pixels.
+
+    Positive when it runs clockwise as seen on the image (rows down, columns right).
+    """
+    row, column = ring[:, 0], ring[:, 1]
+    return 0.5 * float(column @ np.roll(row, -1) - np.roll(column, -1) @ row)
