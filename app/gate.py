@@ -1,0 +1,129 @@
+"""What every request passes first: who may ask, how much may be sent, what the browser may do."""
+
+import json
+from collections.abc import Iterable
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
+
+LARGEST_BODY_BYTES = 64 * 1024
+
+PAGE_POLICY = "; ".join(
+    [
+        "default-src 'none'",
+        "script-src 'self'",
+        "style-src 'self'",
+        "img-src 'self' data:",
+        "connect-src 'self'",
+        "frame-src 'self'",
+        "base-uri 'none'",
+        "form-action 'none'",
+        "frame-ancestors 'none'",
+    ]
+)
+
+_HEADERS = {
+    "Content-Security-Policy": PAGE_POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cache-Control": "no-cache",
+}
+
+
+class Gate:
+    """ASGI middleware that lets only our own page's requests through.
+
+    A web page elsewhere can make a browser send requests here; its Origin gives it away. A name
+    that its owner points at 127.0.0.1 makes that page look like ours; the Host gives it away.
+    """
+
+    def __init__(self, app: ASGIApp, host_names: Iterable[str] = LOOPBACK_NAMES) -> None:
+        """Guard `app`, which may be addressed by `host_names` only."""
+        self._app = app
+        self._host_names = frozenset(name.lower() for name in host_names)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a refused request, hand on any other."""
+        if scope["type"] == "lifespan":
+            await self._app(scope, receive, send)
+            return
+        status, sentence = _refusal(Headers(scope=scope), self._host_names)
+        if sentence:
+            await _refuse(scope, receive, send, status, sentence)
+        elif scope["type"] == "websocket":
+            await self._app(scope, receive, send)
+        else:
+            await self._app(scope, _limited(receive), _with_headers(send))
+
+
+def _refusal(headers: Headers, host_names: frozenset[str]) -> tuple[int, str]:
+    host = headers.get("host", "")
+    if _host_name(host) not in host_names:
+        return 421, (
+            f"This server answers to {', '.join(sorted(host_names))}, not to {host!r}; "
+            "open the address that it printed."
+        )
+    origin = headers.get("origin")
+    if origin is not None and urlsplit(origin).netloc.lower() != host.lower():
+        return 403, f"Requests from {origin} are refused; only this server's own page may ask."
+    length = headers.get("content-length", "0")
+    if not length.isdecimal() or int(length) > LARGEST_BODY_BYTES:
+        return 413, (
+            f"The request's body may hold at most {LARGEST_BODY_BYTES} bytes; got {length}."
+        )
+    return 200, ""
+
+
+def _host_name(host: str) -> str:
+    try:
+        return (urlsplit(f"//{host}").hostname or "").lower()
+    except ValueError:
+        return ""
+
+
+def _limited(receive: Receive) -> Receive:
+    """Return `receive` that ends a body which came without a length and grows too large."""
+    received = 0
+
+    async def limited() -> Message:
+        nonlocal received
+        message = await receive()
+        received += len(message.get("body", b""))
+        return {"type": "http.disconnect"} if received > LARGEST_BODY_BYTES else message
+
+    return limited
+
+
+def _with_headers(send: Send) -> Send:
+    async def with_headers(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            headers = MutableHeaders(scope=message)
+            for name, value in _HEADERS.items():
+                headers.setdefault(name, value)
+        await send(message)
+
+    return with_headers
+
+
+async def _refuse(scope: Scope, receive: Receive, send: Send, status: int, sentence: str) -> None:
+    if scope["type"] == "websocket":
+        await receive()
+        await send({"type": "websocket.close", "code": 1008, "reason": sentence[:120]})
+        return
+    body = json.dumps({"detail": sentence}).encode()
+    start = {
+        "type": "http.response.start",
+        "status": status,
+        "headers": [
+            (b"content-type", b"application/json"),
+            (b"content-length", str(len(body)).encode()),
+            (b"connection", b"close"),
+        ],
+    }
+    await _with_headers(send)(start)
+    await send({"type": "http.response.body", "body": body})

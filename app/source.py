@@ -1,0 +1,23 @@
+"""Where the frames of a live reconstruction come from."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from core.frame import Frame
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Source:
+    """Frames that the workstation plays: a demo, a pass file, or what is pushed to it.
+
+    Attributes:
+        name: what a person calls it, in the page's top bar.
+        description: one sentence on what the frames show.
+        frames: starts a fresh sequence of frames; it may take its time over each.
+        expected_frames: how many will come, None where that is unknown.
+    """
+
+    name: str
+    frames: Callable[[], Iterable[Frame]]
+    description: str = ""
+    expected_frames: int | None = None

@@ -1,0 +1,250 @@
+"""The scene in the viewport: hull, current frame in its imaging plane, line of sight, axes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+from viser import transforms
+
+from app.pictures import SHOWN_FLOOR_DB, translucent_picture
+from app.snapshot import Record, Snapshot
+from core.arrays import Floats
+from core.frame import Frame
+from core.hull.surface import Surface
+
+HULL_COLOUR = (168, 184, 204)
+OUTLINE_COLOUR = (64, 224, 208)
+SIGHT_COLOUR = (255, 180, 84)
+PLANE_COLOUR = (96, 110, 135)
+AXIS_COLOURS = ((239, 98, 98), (122, 204, 102), (92, 148, 255))
+AXIS_NAMES = ("x along-track", "y cross-track", "z nadir")
+
+GRID_CELL_M = 1.0
+GRID_SECTION_M = 5.0
+
+CAMERA_DIRECTION = np.array([0.62, -0.66, -0.42])
+"""From the target towards the default camera: ahead of it, to its side and above (−z is up)."""
+
+CAMERA_FIELD_OF_VIEW_RAD = np.radians(36.0)
+
+
+@dataclass(frozen=True, slots=True)
+class PicturePlane:
+    """Where a parallel image stands in space.
+
+    Attributes:
+        centre_m: (3,) of the picture, target frame.
+        right, down: (3,) unit vectors of growing columns and growing rows.
+        normal: (3,) unit direction in which the picture is moved aside.
+        rows, columns: slices of the image that lie within the window.
+        width_m, height_m: size of the picture.
+    """
+
+    centre_m: Floats
+    right: Floats
+    down: Floats
+    normal: Floats
+    rows: slice
+    columns: slice
+    width_m: float
+    height_m: float
+
+    def quaternion_wxyz(self) -> NDArray[np.float64]:
+        """Return the rotation from the picture's axes (right, down, into it) to the target's."""
+        axes = np.column_stack([self.right, self.down, np.cross(self.right, self.down)])
+        return np.asarray(transforms.SO3.from_matrix(axes).wxyz, dtype=np.float64)
+
+    def border_m(self) -> Floats:
+        """Return the four corners of the picture, (4, 3)."""
+        across, along = 0.5 * self.width_m * self.right, 0.5 * self.height_m * self.down
+        corners = [-across - along, across - along, across + along, along - across]
+        border: Floats = self.centre_m + np.array(corners)
+        return border
+
+
+class Viewport:
+    """Keeps a viser scene in step with the snapshots it is given."""
+
+    def __init__(self, server: viser.ViserServer, side_m: float) -> None:
+        """Set up an empty scene for a target in a cube of `side_m`."""
+        self._server = server
+        self._side_m = side_m
+        self._hull_shown: Surface | None = None
+        self._frame_shown: Record | None = None
+        self._prepare_view()
+        self._add_reference()
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Bring the scene up to date; does nothing for what is already there."""
+        with self._server.atomic():
+            if snapshot.surface is not self._hull_shown:
+                self._show_hull(snapshot.surface)
+            if snapshot.shown is not self._frame_shown:
+                self._show_frame(snapshot.shown)
+                self._show_aspects(snapshot.records)
+
+    def _prepare_view(self) -> None:
+        server = self._server
+        server.gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False)
+        server.scene.configure_environment_map(None)
+        server.scene.configure_default_lights(enabled=True, cast_shadow=False)
+        server.scene.add_light_ambient("/light/ambient", intensity=0.9)
+        server.scene.set_up_direction("-z")
+        distance_m = 0.5 * self._side_m / np.tan(0.5 * CAMERA_FIELD_OF_VIEW_RAD) * 1.25
+        direction = CAMERA_DIRECTION / np.linalg.norm(CAMERA_DIRECTION)
+        server.initial_camera.fov = float(CAMERA_FIELD_OF_VIEW_RAD)
+        server.initial_camera.far = 40 * self._side_m
+        server.initial_camera.position = direction * distance_m
+        server.initial_camera.look_at = np.zeros(3)
+
+    def _add_reference(self) -> None:
+        half = 0.5 * self._side_m
+        # Below the target as it is seen: nadir is down, so the grid lies at +z.
+        self._server.scene.add_grid(
+            "/reference/grid",
+            width=2 * self._side_m,
+            height=2 * self._side_m,
+            plane="xy",
+            position=(0.0, 0.0, half),
+            cell_size=GRID_CELL_M,
+            section_size=GRID_SECTION_M,
+            cell_color=(38, 46, 60),
+            section_color=(64, 76, 98),
+            cell_thickness=0.6,
+            section_thickness=1.0,
+            fade_distance=6 * self._side_m,
+            shadow_opacity=0.0,
+        )
+        for axis, (name, colour) in enumerate(zip(AXIS_NAMES, AXIS_COLOURS, strict=True)):
+            tip = np.eye(3)[axis] * (half + 2)
+            self._arrow(f"/reference/{name}", np.zeros(3), tip, colour, radius_m=0.06)
+            self._label(f"/reference/{name}/label", name, tip * 1.04)
+
+    def _show_hull(self, surface: Surface | None) -> None:
+        self._hull_shown = surface
+        if surface is None or surface.is_empty:
+            self._server.scene.remove_by_name("/hull")
+            return
+        self._server.scene.add_mesh_simple(
+            "/hull",
+            vertices=surface.vertices_m,
+            faces=surface.faces,
+            color=HULL_COLOUR,
+            side="double",
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+
+    def _show_frame(self, record: Record | None) -> None:
+        self._frame_shown = record
+        self._server.scene.remove_by_name("/frame")
+        if record is None:
+            return
+        tail, tip = (-(0.5 * self._side_m + away) * record.frame.line_of_sight for away in (5, 1))
+        self._arrow("/frame/sight", tail, tip, SIGHT_COLOUR, radius_m=0.12)
+        self._label("/frame/sight/label", "line of sight", tail)
+        plane = picture_plane(record.frame, self._side_m)
+        if plane is not None:
+            self._show_picture(record, plane)
+
+    def _show_picture(self, record: Record, plane: PicturePlane) -> None:
+        level = record.frame.decibels(floor_db=SHOWN_FLOOR_DB)[plane.rows, plane.columns]
+        self._server.scene.add_image(
+            "/frame/picture",
+            translucent_picture(level, SHOWN_FLOOR_DB),
+            render_width=plane.width_m,
+            render_height=plane.height_m,
+            format="png",
+            wxyz=plane.quaternion_wxyz(),
+            position=plane.centre_m,
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+        self._lines("/frame/border", [plane.border_m()], PLANE_COLOUR, 1.0)
+        rings = [record.frame.projection.plane_points(ring) for ring in record.silhouette.rings]
+        aside = plane.centre_m @ plane.normal * plane.normal
+        self._lines("/frame/outline", [ring + aside for ring in rings], OUTLINE_COLOUR, 2.0)
+
+    def _show_aspects(self, records: tuple[Record, ...]) -> None:
+        """Mark from where each frame looked, as dots where its line of sight begins."""
+        if not records:
+            self._server.scene.remove_by_name("/aspects")
+            return
+        sights = np.array([record.frame.line_of_sight for record in records])
+        self._server.scene.add_point_cloud(
+            "/aspects",
+            points=(-(0.5 * self._side_m + 5) * sights).astype(np.float32),
+            colors=SIGHT_COLOUR,
+            point_size=0.22,
+            point_shape="circle",
+        )
+
+    def _lines(
+        self, name: str, rings: list[Floats], colour: tuple[int, int, int], width_px: float
+    ) -> None:
+        if not rings:
+            return
+        segments = [np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings]
+        self._server.scene.add_line_segments(
+            name,
+            np.concatenate(segments).astype(np.float32),
+            colour,
+            thickness=width_px,
+            thickness_units="screen",
+        )
+
+    def _arrow(
+        self, name: str, tail: Floats, tip: Floats, colour: tuple[int, int, int], *, radius_m: float
+    ) -> None:
+        self._server.scene.add_arrows(
+            name,
+            np.array([[tail, tip]], dtype=np.float32),
+            colour,
+            shaft_radius=radius_m,
+            head_radius=3 * radius_m,
+            head_length=8 * radius_m,
+        )
+
+    def _label(self, name: str, text: str, position: Floats) -> None:
+        self._server.scene.add_label(name, text, position=position, anchor="center-center")
+
+
+def picture_plane(frame: Frame, side_m: float) -> PicturePlane | None:
+    """Return where the frame's picture stands, None for a perspective image.
+
+    The picture is cut to the window of `side_m` around the target and moved along its normal to
+    the edge of that window, on the side away from the default camera: in the plane through the
+    target the hull would hide it.
+    """
+    if not frame.projection.is_affine:
+        return None
+    to_plane = frame.projection.plane_points
+    corner, right_end, down_end = to_plane(np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]))
+    right, down = right_end - corner, down_end - corner
+    size = np.linalg.norm(down), np.linalg.norm(right)
+    rows, columns = (
+        _window(origin, count, 0.5 * side_m / float(spacing))
+        for origin, count, spacing in zip(
+            frame.projection.matrix[:, 3], frame.shape, size, strict=True
+        )
+    )
+    normal = frame.projection.viewing_direction()
+    normal = -normal if normal @ CAMERA_DIRECTION > 0 else normal
+    middle = np.array([0.5 * (cut.start + cut.stop - 1) for cut in (rows, columns)])
+    return PicturePlane(
+        centre_m=to_plane(middle) + 0.5 * side_m * normal,
+        right=right / size[1],
+        down=down / size[0],
+        normal=normal,
+        rows=rows,
+        columns=columns,
+        width_m=float((columns.stop - columns.start) * size[1]),
+        height_m=float((rows.stop - rows.start) * size[0]),
+    )
+
+
+def _window(origin_px: float, count: int, half_px: float) -> slice:
+    first = int(np.clip(np.floor(origin_px - half_px), 0, count - 2))
+    last = int(np.clip(np.ceil(origin_px + half_px), first + 1, count - 1))
+    return slice(first, last + 1)

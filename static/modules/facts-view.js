@@ -1,0 +1,102 @@
+// What is known of the frame and of the hull, in words and numbers.
+
+import { count, fixed, frames, vector, withUnit } from "./numbers.js";
+
+/** The rows that describe a frame. */
+export function frameRows(frame) {
+  return [
+    ["Time", withUnit(frame.time_s, 1, "s")],
+    [
+      "Line of sight",
+      `elevation ${fixed(frame.elevation_deg, 1)}°, azimuth ${fixed(frame.azimuth_deg, 1)}°`,
+    ],
+    ["Direction x, y, z", vector(frame.line_of_sight)],
+    [
+      "Resolution",
+      frame.row_resolution_m === null
+        ? "unknown"
+        : `range ${withUnit(frame.row_resolution_m, 2, "m")}, ` +
+          `cross-range ${withUnit(frame.column_resolution_m, 2, "m")}`,
+    ],
+    ["Silhouette", silhouetteText(frame)],
+    ["Found by", frame.silhouette.provenance || "unknown"],
+  ];
+}
+
+function silhouetteText(frame) {
+  const { rings, claim, area_px: area } = frame.silhouette;
+  if (rings.length === 0) return "nothing found";
+  const side = claim === "lit side" ? "lit side only" : "complete";
+  if (frame.row_spacing_m === null) return `${side}, ${count(Math.round(area))} px`;
+  const square = area * frame.row_spacing_m * frame.column_spacing_m;
+  return `${side}, ${withUnit(square, 1, "m²")}`;
+}
+
+/** The rows that describe the hull's surface. */
+export function hullRows(hull) {
+  return [
+    ["Volume", hull.volume_m3 === null ? "not bounded" : withUnit(hull.volume_m3, 1, "m³")],
+    ["Vertices", count(hull.vertices)],
+    ["Faces", count(hull.faces)],
+  ];
+}
+
+/** Replace the rows of a description list. */
+export function showRows(list, rows) {
+  list.replaceChildren(
+    ...rows.map(([term, text]) => {
+      const row = document.createElement("div");
+      row.append(element("dt", term), element("dd", text));
+      return row;
+    }),
+  );
+}
+
+/** Replace the rows of the extents' table; what is not bounded gets words, never a number. */
+export function showExtents(body, extents) {
+  body.replaceChildren(
+    ...extents.map((extent) => {
+      const row = document.createElement("tr");
+      const name = element("th", extent.name);
+      name.scope = "row";
+      const swatch = element("i", "");
+      swatch.className = `swatch ${extent.name[0]}`;
+      name.prepend(swatch);
+      row.append(name, extentCell(extent));
+      return row;
+    }),
+  );
+}
+
+function extentCell(extent) {
+  if (!extent.is_bounded) {
+    const cell = element("td", "not bounded by these views");
+    cell.className = "open";
+    return cell;
+  }
+  const cell = element("td", fixed(extent.value_m, 2));
+  cell.append(element("small", "\u202fm"));
+  return cell;
+}
+
+/** Name the direction that no frame constrains, if there is one. */
+export function showUnobserved(note, direction) {
+  note.hidden = direction === null;
+  if (direction === null) return;
+  note.replaceChildren(
+    element("b", `Unobserved: ${vector(direction)}`),
+    "All lines of sight so far turn in nearly one plane; along this direction (x, y, z) the hull " +
+      "is not measured.",
+  );
+}
+
+/** "after 12 frames". */
+export function afterFrames(number) {
+  return `after ${frames(number)}`;
+}
+
+function element(name, text) {
+  const made = document.createElement(name);
+  made.textContent = text;
+  return made;
+}

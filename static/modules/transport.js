@@ -1,0 +1,139 @@
+// Play, pause, step, speed, restart, the row of frames, and the keys for them.
+
+import { fixed, frames } from "./numbers.js";
+
+const AS_FAST_AS_COMPUTED = "max";
+
+export class Transport {
+  #state = null;
+  #send;
+  #show;
+  #parts;
+
+  /** Control playback through `send(order)` and choose the frame through `show(number or null)`. */
+  constructor(parts, send, show) {
+    this.#parts = parts;
+    this.#send = send;
+    this.#show = show;
+    parts.play.addEventListener("click", () => this.#togglePlay());
+    parts.step.addEventListener("click", () => send({ action: "step" }));
+    parts.restart.addEventListener("click", () => send({ action: "restart" }));
+    parts.follow.addEventListener("click", () => show(null));
+    parts.speed.addEventListener("change", () => send({ speed_hz: speedOf(parts.speed.value) }));
+    parts.cells.addEventListener("click", (event) => this.#chooseCell(event));
+    document.addEventListener("keydown", (event) => this.#onKey(event));
+  }
+
+  update(state) {
+    this.#state = state;
+    const { play, step, follow, text } = this.#parts;
+    const isOver = state.status === "finished" || state.status === "failed";
+    const isPlaying = state.status === "playing" || state.status === "preparing";
+    play.classList.toggle("playing", isPlaying);
+    play.querySelector("span").textContent = isPlaying ? "Pause" : "Play";
+    play.disabled = isOver;
+    step.disabled = isOver;
+    follow.hidden = state.following;
+    text.textContent = reelText(state);
+    this.#updateSpeeds(state);
+    this.#updateCells(state);
+  }
+
+  /** Space in the viewport's frame plays and pauses too; its other keys move the camera. */
+  listenIn(frame) {
+    frame.contentWindow?.addEventListener("keydown", (event) => {
+      if (event.code !== "Space" || event.repeat) return;
+      event.preventDefault();
+      this.#togglePlay();
+    });
+  }
+
+  #togglePlay() {
+    if (this.#state === null || this.#parts.play.disabled) return;
+    this.#send({ action: this.#state.status === "paused" ? "play" : "pause" });
+  }
+
+  #onKey(event) {
+    const field = event.target.closest?.("input, select, button, textarea");
+    if (event.ctrlKey || event.metaKey || event.altKey || this.#state === null) return;
+    if (field?.matches("input, select, textarea")) return;
+    if (event.code === "Space" && !field && !event.repeat) this.#togglePlay();
+    else if (event.code === "ArrowRight") this.#nextFrame();
+    else if (event.code === "ArrowLeft") this.#previousFrame();
+    else return;
+    event.preventDefault();
+  }
+
+  #nextFrame() {
+    const { following, shown, frames: received } = this.#state;
+    if (!following) this.#show(shown + 1 < received ? shown + 1 : null);
+    else if (!this.#parts.step.disabled) this.#send({ action: "step" });
+  }
+
+  #previousFrame() {
+    if (this.#state.shown > 1) this.#show(this.#state.shown - 1);
+  }
+
+  #chooseCell(event) {
+    const number = Number(event.target.dataset.number);
+    if (number) this.#show(number === this.#state.frames ? null : number);
+  }
+
+  #updateSpeeds(state) {
+    const { speed } = this.#parts;
+    const offered = [...new Set([...state.speeds_hz, state.speed_hz])];
+    if (speed.options.length !== offered.length) {
+      speed.replaceChildren(...offered.map((hertz) => new Option(speedText(hertz), speedKey(hertz))));
+    }
+    speed.value = speedKey(state.speed_hz);
+  }
+
+  #updateCells(state) {
+    const { cells } = this.#parts;
+    const wanted = Math.max(state.source.expected_frames ?? 0, state.frames);
+    while (cells.children.length > wanted) cells.lastChild.remove();
+    while (cells.children.length < wanted) cells.append(document.createElement("div"));
+    [...cells.children].forEach((cell, index) => updateCell(cell, index + 1, state));
+    const shown = cells.children[(state.shown ?? 0) - 1];
+    if (shown) cells.setAttribute("aria-activedescendant", shown.id);
+  }
+}
+
+function updateCell(cell, number, state) {
+  const isReceived = number <= state.frames;
+  cell.className = isReceived ? "received" : "";
+  cell.classList.toggle("latest", number === state.frames);
+  cell.classList.toggle("shown", number === state.shown);
+  if (!isReceived) {
+    cell.removeAttribute("role");
+    cell.removeAttribute("title");
+    delete cell.dataset.number;
+    return;
+  }
+  cell.id = `frame-${number}`;
+  cell.dataset.number = number;
+  cell.role = "option";
+  cell.ariaSelected = String(number === state.shown);
+  cell.title = `Frame ${number}, ${fixed(state.times_s[number - 1], 1)} s`;
+  cell.ariaLabel = cell.title;
+}
+
+function reelText(state) {
+  if (state.shown === null) return "No frame yet";
+  const hull = `hull of all ${frames(state.frames)} so far`;
+  if (state.following) return `Showing the latest, frame ${state.shown}; ${hull}`;
+  return `Showing frame ${state.shown}; ${hull}`;
+}
+
+function speedText(hertz) {
+  if (hertz === null) return "as computed";
+  return hertz === 1 ? "1 frame/s" : `${hertz} frames/s`;
+}
+
+function speedKey(hertz) {
+  return hertz === null ? AS_FAST_AS_COMPUTED : String(hertz);
+}
+
+function speedOf(key) {
+  return key === AS_FAST_AS_COMPUTED ? null : Number(key);
+}
