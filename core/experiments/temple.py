@@ -1,0 +1,181 @@
+"""A measured object: the hull of 16 photographs against the object's known bounding box."""
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from core.arrays import Floats
+from core.experiments.results import Figure, Results, Table
+from core.formats.middlebury import read_photographs
+from core.frame import Frame
+from core.geometry.grid import VoxelGrid
+from core.hull.bounds import hull_bounds_m
+from core.hull.surface import mask_surface
+from core.hull.view import View
+from core.hull.votes import VoteVolume
+from core.silhouettes.photograph import photograph_silhouette, threshold_silhouette
+from core.silhouettes.silhouette import Silhouette
+
+Progress = Callable[[str, int, int], None]
+"""Called with what is being done, how much is done, and how much there is."""
+
+TRUE_LOWER_M = (-0.073568, 0.021728, -0.012445)
+TRUE_UPPER_M = (0.028855, 0.181892, 0.062736)
+"""Tight bounding box of templeSparseRing, from the data set's README (Seitz et al., CVPR 2006)."""
+
+NAIVE_LEVEL = 0.12
+"""Brightness, of 1, of the one threshold for all photographs that ours is compared with."""
+
+SPACING_M = 0.5e-3
+"""A pixel is about 0.4 mm wide on the object."""
+
+WANTED = "<= 4 %"
+
+
+def run_temple(
+    data: Path, *, spacing_m: float | None = None, progress: Progress | None = None
+) -> Results:
+    """Carve the templeSparseRing object from its photographs and measure its bounding box.
+
+    All 16 views vote. The grid is what the silhouettes leave (`hull_bounds_m`); the true box is
+    looked at only when the errors are taken. Beside it runs the same with one brightness threshold
+    for all photographs. That fails because lit folds of the cloth under the object are brighter
+    than the object's shaded sides: at 0.12 the cloth stays in the hull, as phantoms far from the
+    object and as a brim around its base, and a threshold high enough to drop it cuts the object
+    in two (at 0.25, error 15 %).
+
+    What is left of our error stands below the object: y is up, every camera looks down on it, so
+    that a pyramid under its base lies in all silhouettes. No silhouette can tell it from the base.
+
+    Args:
+        data: folder with templeSR_par.txt and the 16 pictures.
+        spacing_m: voxel spacing; None for 0.5 mm.
+        progress: told after every photograph, or None.
+
+    Raises:
+        ValueError: the folder lacks files, or the hull is empty.
+    """
+    spacing_m = SPACING_M if spacing_m is None else spacing_m
+    frames = read_photographs(data)
+    ours = _hull(_views(frames, photograph_silhouette, "silhouettes", progress), spacing_m)
+    naive, grid = _hull(_views(frames, _naive_silhouette, "threshold", progress), spacing_m)
+    boxes_m = {
+        "ours": _box_m(*ours),
+        "naive": _box_m(naive, grid),
+        "naive's largest part": _box_m(_largest_part(naive), grid),
+    }
+    return Results(
+        name="temple",
+        settings={
+            "photographs": len(frames),
+            "spacing_m": spacing_m,
+            "silhouettes": "Otsu's threshold refined by GrabCut",
+            "votes_needed": len(frames),
+            "naive_level": NAIVE_LEVEL,
+        },
+        figures=_figures(boxes_m),
+        tables=(_sides_table(boxes_m), _faces_table(boxes_m)),
+    )
+
+
+def side_errors_percent(box_m: Floats) -> Floats:
+    """Return how much longer than the true one each side of a box (2, 3) is, (3,), in percent."""
+    true = np.subtract(TRUE_UPPER_M, TRUE_LOWER_M)
+    errors: Floats = 100 * ((box_m[1] - box_m[0]) / true - 1)
+    return errors
+
+
+def _naive_silhouette(frame: Frame) -> Silhouette:
+    return threshold_silhouette(frame, NAIVE_LEVEL)
+
+
+def _views(
+    frames: Sequence[Frame],
+    silhouette_of: Callable[[Frame], Silhouette],
+    what: str,
+    progress: Progress | None,
+) -> list[View]:
+    views = []
+    for frame in frames:
+        views.append(View(silhouette=silhouette_of(frame), projection=frame.projection))
+        if progress:
+            progress(what, len(views), len(frames))
+    return views
+
+
+def _hull(views: Sequence[View], spacing_m: float) -> tuple[NDArray[np.bool_], VoxelGrid]:
+    lower_m, upper_m = hull_bounds_m(views)
+    grid = VoxelGrid.over(
+        lower_m=lower_m - spacing_m, upper_m=upper_m + spacing_m, spacing_m=spacing_m
+    )
+    volume = VoteVolume(grid)
+    for view in views:
+        volume.add(view)
+    hull = volume.hull()
+    if not hull.any():
+        raise ValueError(
+            f"No voxel of {1e3 * spacing_m:g} mm lies in all {len(views)} silhouettes; "
+            "check that cameras and pictures belong together, or take a smaller spacing."
+        )
+    return hull, grid
+
+
+def _box_m(hull: NDArray[np.bool_], grid: VoxelGrid) -> Floats:
+    """Return the bounding box (lower, upper), (2, 3), of a hull's surface."""
+    vertices_m = mask_surface(hull, grid).vertices_m
+    box: Floats = np.stack([vertices_m.min(axis=0), vertices_m.max(axis=0)])
+    return box
+
+
+def _largest_part(hull: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return the largest 26-connected part of a hull: the object is one, the rest phantoms."""
+    labels, _ = ndimage.label(hull, structure=np.ones((3, 3, 3)))
+    sizes = np.bincount(labels.ravel())
+    sizes[0] = 0
+    part: NDArray[np.bool_] = labels == np.argmax(sizes)
+    return part
+
+
+def _figures(boxes_m: Mapping[str, Floats]) -> tuple[Figure, ...]:
+    errors = {name: side_errors_percent(box) for name, box in boxes_m.items()}
+    means = {name: float(np.abs(error).mean()) for name, error in errors.items()}
+    ours, *others = means
+    return (
+        Figure(name="mean error of the three sides", value=means[ours], unit="%", wanted=WANTED),
+        *(
+            Figure(name=f"error of side {axis}", value=float(errors[ours][i]), unit="%")
+            for i, axis in enumerate("xyz")
+        ),
+        *(Figure(name=f"mean error, {name}", value=means[name], unit="%") for name in others),
+    )
+
+
+def _sides_table(boxes_m: Mapping[str, Floats]) -> Table:
+    true = 1e3 * np.subtract(TRUE_UPPER_M, TRUE_LOWER_M)
+    columns, rows = ["side", "true, mm"], [[axis, f"{true[i]:.1f}"] for i, axis in enumerate("xyz")]
+    rows.append(["mean |error|", ""])
+    for name, box in boxes_m.items():
+        errors = side_errors_percent(box)
+        columns += [f"{name}, mm", "error, %"]
+        for i in range(3):
+            rows[i] += [f"{1e3 * (box[1, i] - box[0, i]):.1f}", f"{errors[i]:+.1f}"]
+        rows[3] += ["", f"{np.abs(errors).mean():.1f}"]
+    return Table(
+        title="Sides of the bounding box", columns=tuple(columns), rows=tuple(map(tuple, rows))
+    )
+
+
+def _faces_table(boxes_m: Mapping[str, Floats]) -> Table:
+    boxes = {"true": np.array([TRUE_LOWER_M, TRUE_UPPER_M]), **boxes_m}
+    return Table(
+        title="Faces of the bounding box",
+        columns=("face", *(f"{name}, mm" for name in boxes)),
+        rows=tuple(
+            (f"{name} {axis}", *(f"{1e3 * box[end, i]:.1f}" for box in boxes.values()))
+            for i, axis in enumerate("xyz")
+            for end, name in enumerate(("lower", "upper"))
+        ),
+    )

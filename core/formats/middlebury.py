@@ -1,0 +1,136 @@
+"""Calibrated photographs in the form of the Middlebury multi-view stereo data sets."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from core.arrays import Floats
+from core.frame import Frame
+from core.geometry.projection import Projection
+
+PARAMETERS_PER_LINE = 21
+"""K and R, nine numbers each, row by row, and the three of t."""
+
+ROTATION_TOLERANCE = 1e-3
+"""How far R Rᵀ may be from the identity; the data sets reach 1e-6."""
+
+
+def read_photographs(folder: Path) -> tuple[Frame, ...]:
+    """Read the photographs that the one `*_par.txt` of a folder lists, in its order.
+
+    Each frame's amplitude is the picture's luma (ITU-R BT.601) from 0 to 1, as the file holds it,
+    not linearised. Its projection is perspective, the target frame is the data set's own, in
+    metres. The files give no times; the photographs stand one second apart in listed order.
+
+    Raises:
+        ValueError: no or several lists of cameras, a line that is no camera, or a picture that is
+            missing or cannot be read.
+
+    Source: Seitz et al., "A comparison and evaluation of multi-view stereo reconstruction
+    algorithms", CVPR 2006, whose data sets define the form.
+    """
+    lines = _camera_lines(_camera_list(folder))
+    return tuple(_frame(folder, number, *line) for number, line in enumerate(lines))
+
+
+def camera_projection(intrinsics: Floats, rotation: Floats, translation_m: Floats) -> Projection:
+    """Return the projection to (row, column) of a camera that gives (x, y) pixels by K [R t].
+
+    Args:
+        intrinsics: (3, 3) K, pixels.
+        rotation: (3, 3) R from target frame to camera.
+        translation_m: (3,) t, the target frame's origin as the camera sees it.
+
+    Raises:
+        ValueError: R is no rotation.
+    """
+    skew = float(np.abs(rotation @ rotation.T - np.eye(3)).max())
+    if skew > ROTATION_TOLERANCE or float(np.linalg.det(rotation)) < 0:
+        raise ValueError(
+            f"R must be a rotation, but R Rᵀ differs from the identity by {skew:.2g} and "
+            f"det R is {float(np.linalg.det(rotation)):.3g}."
+        )
+    to_column_row = intrinsics @ np.column_stack([rotation, translation_m])
+    return Projection(matrix=to_column_row[[1, 0, 2]])
+
+
+def _camera_list(folder: Path) -> Path:
+    if not folder.is_dir():
+        raise ValueError(
+            f"Wanted a folder with a Middlebury *_par.txt and its pictures; {folder} is no folder."
+        )
+    lists = sorted(folder.glob("*_par.txt"))
+    if len(lists) != 1:
+        found = ", ".join(path.name for path in lists) or "none"
+        raise ValueError(
+            f"Wanted one list of cameras (*_par.txt) in {folder}, found {found}. "
+            "Give the folder of one unpacked Middlebury data set."
+        )
+    return lists[0]
+
+
+def _camera_lines(path: Path) -> list[tuple[str, Floats]]:
+    """Return picture name and 21 camera parameters of each line after the count."""
+    try:
+        count, *lines = path.read_text(encoding="utf-8").split("\n")
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path.name} is no text file: {error}.") from error
+    cameras = [
+        _camera_line(line, f"{path.name}, line {number}")
+        for number, line in enumerate(lines, start=2)
+        if line.strip()
+    ]
+    if count.strip() != str(len(cameras)) or not cameras:
+        raise ValueError(
+            f'{path.name} announces "{count.strip()[:20]}" pictures in its first line and lists '
+            f"{len(cameras)}; is the file cut off?"
+        )
+    return cameras
+
+
+def _camera_line(line: str, where: str) -> tuple[str, Floats]:
+    name, *words = line.split()
+    try:
+        parameters = np.array(words, dtype=np.float64)
+    except ValueError as error:
+        raise ValueError(f"{where}: {error}; wanted a picture's name and numbers.") from error
+    if len(parameters) != PARAMETERS_PER_LINE or not np.all(np.isfinite(parameters)):
+        raise ValueError(
+            f"{where}: wanted a picture's name and {PARAMETERS_PER_LINE} finite numbers "
+            f"(K, R, t), got {len(parameters)}."
+        )
+    if Path(name).name != name:
+        raise ValueError(f'{where}: the picture "{name}" must lie in the same folder.')
+    return name, parameters
+
+
+def _frame(folder: Path, number: int, name: str, parameters: Floats) -> Frame:
+    intrinsics, rotation = parameters[:18].reshape(2, 3, 3)
+    try:
+        projection = camera_projection(intrinsics, rotation, parameters[18:])
+    except ValueError as error:
+        raise ValueError(f"Camera of {name}: {error}") from error
+    return Frame(
+        amplitude=_luma(folder / name),
+        projection=projection,
+        time_s=float(number),
+        sensor="optical",
+        line_of_sight=projection.viewing_direction(),
+        label=Path(name).stem,
+    )
+
+
+def _luma(path: Path) -> NDArray[np.float32]:
+    """Return a picture's luma from 0 to 1, (rows, columns)."""
+    if not path.is_file():
+        raise ValueError(
+            f"The list of cameras names {path.name}, which is not in {path.parent}; "
+            "unpack the data set whole."
+        )
+    picture = cv2.imdecode(np.fromfile(path, dtype=np.uint8), cv2.IMREAD_GRAYSCALE)
+    if picture is None:
+        raise ValueError(f"{path.name} is no picture that OpenCV can read; is it cut off?")
+    luma: NDArray[np.float32] = picture.astype(np.float32) / np.float32(255)
+    return luma
