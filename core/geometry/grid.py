@@ -37,7 +37,7 @@ class VoxelGrid:
         count = int(np.prod(self.shape, dtype=np.int64))
         if count > MAX_VOXELS:
             raise ValueError(
-                f"A grid of {self.shape} holds {count:,} voxels and its votes would need "
+                f"A grid of {self.shape} holds {count:,} voxels; its votes would need "
                 f"{count / 2**30:.1f} GiB; at most {MAX_VOXELS:,} are allowed. Use a larger spacing."
             )
 

@@ -38,7 +38,7 @@ class Projection:
     @property
     def is_affine(self) -> bool:
         """Whether the projection is parallel (radar, affine camera), not perspective."""
-        return self.matrix.shape[0] == 2
+        return len(self.matrix) == 2
 
     def image_points(self, points_m: Floats) -> Floats:
         """Project target points (…, 3) in metres to (…, 2) as (row, column)."""

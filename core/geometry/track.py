@@ -1,6 +1,7 @@
 """Lines of sight over time, with or without an orbit behind them."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -96,7 +97,7 @@ class LineOfSightTrack:
         step = np.diff(self.time_s)
         edges = np.flatnonzero(step > 3 * np.median(step)) + 1
         bounds = [0, *edges.tolist(), len(self.time_s)]
-        return list(zip(bounds[:-1], bounds[1:], strict=True))
+        return list(pairwise(bounds))
 
 
 def line_of_sight_from_angles(elevation_rad: Floats, azimuth_rad: Floats) -> Floats:
@@ -182,3 +183,10 @@ def random_views_track(
         line_of_sight=line_of_sight.reshape(-1, 3),
         line_of_sight_rate_per_s=(direction * turn_rad / duration_s).reshape(-1, 3),
     )
+
+
+def accumulated_turn_rad(line_of_sight: Floats) -> Floats:
+    """Return the angle that unit vectors (pulses, 3) have swept up to each pulse, (pulses,)."""
+    chord = np.linalg.norm(np.diff(line_of_sight, axis=0), axis=1)
+    turn: Floats = np.concatenate([[0.0], np.cumsum(2 * np.arcsin(np.minimum(chord / 2, 1.0)))])
+    return turn

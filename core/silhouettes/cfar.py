@@ -59,7 +59,9 @@ def detect(
             f"Every pixel of the frame has the same amplitude, {values[0]:g}; there is no image."
         )
     background = values
-    for rounds in range(1, MAX_ROUNDS + 1):
+    rounds = 0
+    while rounds < MAX_ROUNDS:
+        rounds += 1
         mean, deviation = float(background.mean()), float(background.std())
         kept = values[values <= mean + censoring_factor * deviation]
         if len(kept) == len(background) or len(kept) == 0:

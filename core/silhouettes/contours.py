@@ -24,7 +24,8 @@ def cleaned_mask(
     if closing_px > 1:
         disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (closing_px, closing_px))
         # Padded, so that the closing of a target at the image's edge does not wrap or clip.
-        padded = cv2.copyMakeBorder(closed, *4 * [closing_px], cv2.BORDER_CONSTANT, value=0)
+        border = (closing_px, closing_px, closing_px, closing_px)
+        padded = cv2.copyMakeBorder(closed, *border, borderType=cv2.BORDER_CONSTANT, value=0)
         closed = cv2.morphologyEx(padded, cv2.MORPH_CLOSE, disc)
         closed = closed[closing_px:-closing_px, closing_px:-closing_px]
     cleaned: NDArray[np.bool_] = closed.astype(bool)

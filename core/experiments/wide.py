@@ -1,0 +1,216 @@
+"""The paper's experiment A: a Tiangong-like target under views from all around."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from core.experiments.results import Figure, Results, Table
+from core.frame import Frame
+from core.geometry.grid import VoxelGrid
+from core.geometry.track import random_views_track
+from core.hull.shadow import CarvingRule, carving_view
+from core.hull.surface import Surface, hull_surface
+from core.hull.view import View
+from core.hull.votes import VoteVolume
+from core.measurement.comparison import Agreement, voxel_agreement
+from core.measurement.lines import LineMeasurement, angle_between_lines_rad, principal_lines
+from core.radar.echoes import simulate_echoes
+from core.radar.imaging import ImagingSettings, frames
+from core.radar.scatterers import surface_scatterers
+from core.radar.targets import LineFeature, Target, tiangong_like
+from core.radar.waveform import Waveform
+from core.silhouettes.extraction import extract_silhouette
+
+Progress = Callable[[str, int, int], None]
+
+WANTED = {
+    "IoU, shadow rule": ">= 0.75",
+    "span error, shadow rule": "<= 2 %",
+    "length error, shadow rule": "<= 2 %",
+    "diameter error, shadow rule": "<= 8 %",
+}
+
+
+def run_wide(
+    *,
+    views: int = 80,
+    spacing_m: float = 0.15,
+    scatterers: int = 60_000,
+    signal_to_noise_db: float = 20.0,
+    seed: int = 1,
+    progress: Progress = lambda _stage, _done, _total: None,
+) -> Results:
+    """Simulate echoes, image them, extract silhouettes, carve by both rules, compare with truth.
+
+    The truth enters only the last step; silhouettes come from the simulated echoes alone.
+
+    Args:
+        views: random directions over the sphere, one coherent interval each.
+        spacing_m: voxel spacing.
+        scatterers: points on the target's surface.
+        signal_to_noise_db: as in `simulate_echoes`.
+        seed: of the random generator.
+        progress: told of stage, steps done and steps in all.
+
+    Raises:
+        ValueError: fewer than two views, or parameters a stage refuses.
+    """
+    if views < 2:
+        raise ValueError(f"A hull needs at least 2 views, got {views}.")
+    target = tiangong_like()
+    images = simulated_frames(
+        target,
+        views=views,
+        scatterers=scatterers,
+        signal_to_noise_db=signal_to_noise_db,
+        random=np.random.default_rng(seed),
+        progress=progress,
+    )
+    outlines = []
+    for number, frame in enumerate(images, start=1):
+        silhouette = extract_silhouette(frame)
+        outlines.append(View(silhouette=silhouette, projection=frame.projection))
+        progress("silhouettes", number, len(images))
+    grid = VoxelGrid.cube(side_m=21.0, spacing_m=spacing_m)
+    truth = target.voxels(grid)
+    figures: list[Figure] = []
+    rows = []
+    for rule in ("shadow", "strict"):
+        agreement, surface = _carved(outlines, grid, truth, rule, progress)
+        figures += _figures(rule, agreement, surface, target)
+        rows.append(_row(rule, agreement, surface, target))
+    settings = {
+        "target": target.name,
+        "views": views,
+        "spacing_m": spacing_m,
+        "scatterers": scatterers,
+        "signal_to_noise_db": signal_to_noise_db,
+        "seed": seed,
+    }
+    return Results(
+        name="wide", settings=settings, figures=tuple(figures), tables=(_table(rows, target),)
+    )
+
+
+def simulated_frames(
+    target: Target,
+    *,
+    views: int,
+    scatterers: int,
+    signal_to_noise_db: float,
+    random: np.random.Generator,
+    progress: Progress = lambda _stage, _done, _total: None,
+) -> list[Frame]:
+    """Return radar frames of a target from random directions, imaged from simulated echoes.
+
+    Args:
+        target: what is seen.
+        views: number of frames.
+        scatterers: points on the surface.
+        signal_to_noise_db: as in `simulate_echoes`.
+        random: for directions, scatterers and noise.
+        progress: told of stage, steps done and steps in all.
+    """
+    waveform = Waveform()
+    imaging = ImagingSettings()
+    points = surface_scatterers(target, count=scatterers, random=random)
+    track = random_views_track(
+        views=views,
+        turn_rad=waveform.wavelength_m / (2 * imaging.cross_range_resolution_m),
+        pulses_per_view=256,
+        pulse_repetition_frequency_hz=waveform.pulse_repetition_frequency_hz,
+        random=random,
+    )
+    images: list[Frame] = []
+    for start, stop in track.bursts():
+        history = simulate_echoes(
+            points,
+            track.part(start, stop),
+            waveform,
+            signal_to_noise_db=signal_to_noise_db,
+            random=random,
+        )
+        images += frames(history, imaging)
+        progress("echoes and images", len(images), views)
+    return images
+
+
+def _carved(
+    outlines: Sequence[View],
+    grid: VoxelGrid,
+    truth: np.ndarray[tuple[int, ...], np.dtype[np.bool_]],
+    rule: CarvingRule,
+    progress: Progress,
+) -> tuple[Agreement, Surface]:
+    volume = VoteVolume(grid)
+    for number, view in enumerate(outlines, start=1):
+        volume.add(carving_view(view, rule))
+        progress(f"votes, {rule} rule", number, len(outlines))
+    return voxel_agreement(volume.hull(), truth), hull_surface(volume)
+
+
+def _measured(surface: Surface, target: Target) -> list[tuple[LineFeature, LineMeasurement | None]]:
+    """Pair the target's features, longest first, with the hull's principal lines."""
+    features = sorted(target.features, key=lambda feature: -feature.length_m)
+    if surface.is_empty:
+        return [(feature, None) for feature in features]
+    first, second, third = (feature.name for feature in features)
+    return list(zip(features, principal_lines(surface, (first, second, third)), strict=True))
+
+
+def _figures(
+    rule: CarvingRule, agreement: Agreement, surface: Surface, target: Target
+) -> list[Figure]:
+    named: list[tuple[str, float | None, str]] = [
+        ("IoU", agreement.intersection_over_union, ""),
+        ("coverage", agreement.coverage, ""),
+    ]
+    for feature, line in _measured(surface, target):
+        error = angle = length = None
+        if line is not None:
+            length = line.length_m
+            error = abs(length - feature.length_m) / feature.length_m * 100
+            angle = float(np.rad2deg(angle_between_lines_rad(line.direction, feature.direction)))
+        named += [
+            (feature.name, length, "m"),
+            (f"{feature.name} error", error, "%"),
+            (f"{feature.name} attitude error", angle, "°"),
+        ]
+    return [
+        Figure(
+            name=f"{name}, {rule} rule",
+            value=value,
+            unit=unit,
+            wanted=WANTED.get(f"{name}, {rule} rule"),
+        )
+        for name, value, unit in named
+    ]
+
+
+def _row(
+    rule: CarvingRule, agreement: Agreement, surface: Surface, target: Target
+) -> tuple[str, ...]:
+    lines = [
+        "none" if line is None else f"{line.length_m:.2f} ({_error_percent(line, feature):+.1f} %)"
+        for feature, line in _measured(surface, target)
+    ]
+    return (
+        f"{rule} rule",
+        f"{agreement.intersection_over_union:.3f}",
+        f"{agreement.coverage:.3f}",
+        *lines,
+    )
+
+
+def _error_percent(line: LineMeasurement, feature: LineFeature) -> float:
+    return (line.length_m / feature.length_m - 1) * 100
+
+
+def _table(rows: list[tuple[str, ...]], target: Target) -> Table:
+    features = sorted(target.features, key=lambda feature: -feature.length_m)
+    truth = ("truth", "1.000", "1.000", *(f"{feature.length_m:.2f}" for feature in features))
+    return Table(
+        title="Hull from simulated echoes against the truth",
+        columns=("", "IoU", "coverage", *(f"{feature.name} (m)" for feature in features)),
+        rows=(*rows, truth),
+    )

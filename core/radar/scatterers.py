@@ -1,0 +1,95 @@
+"""Surface scatterers: the fast diffuse model of what the radar sees."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+from trimesh.ray.ray_pyembree import RayMeshIntersector
+
+from core.arrays import Floats, frozen
+from core.radar.targets import Target
+
+SURFACE_OFFSET_M = 1e-3
+"""Rays start this far off the surface, or they would meet their own facet."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Scatterers:
+    """Points on a target's surface that re-radiate with a fixed random phase.
+
+    Attributes:
+        position_m: (points, 3), target frame.
+        normal: (points, 3) outward unit normals.
+        reflectivity: (points,) complex; |reflectivity|² is the surface area it stands for in m².
+        mesh: what shades them.
+    """
+
+    position_m: Floats
+    normal: Floats
+    reflectivity: NDArray[np.complex128]
+    mesh: trimesh.Trimesh
+
+    def __post_init__(self) -> None:
+        position = frozen(self.position_m, np.float64, (None, 3), "Scatterer positions")
+        count = len(position)
+        object.__setattr__(self, "position_m", position)
+        object.__setattr__(self, "normal", frozen(self.normal, np.float64, (count, 3), "Normals"))
+        reflectivity = frozen(self.reflectivity, np.complex128, (count,), "Reflectivities")
+        object.__setattr__(self, "reflectivity", reflectivity)
+
+    def mean_echo_power(self) -> float:
+        """Return the echo power averaged over all aspects, in m².
+
+        Source: Cauchy (1841): a convex body's projected area is on average a quarter of its
+        surface. Bodies that shade themselves return somewhat less.
+        """
+        return float(np.sum(np.abs(self.reflectivity) ** 2)) / 4
+
+
+def surface_scatterers(target: Target, *, count: int, random: np.random.Generator) -> Scatterers:
+    """Spread scatterers evenly over a target's surface, with random phases.
+
+    Args:
+        target: the body.
+        count: number of scatterers; a resolution cell should hold several.
+        random: for places and phases.
+
+    Raises:
+        ValueError: the target has no surface, or fewer than one scatterer is asked for.
+    """
+    mesh = target.mesh()
+    if len(mesh.faces) == 0 or not mesh.area > 0:
+        raise ValueError(f"{target.name} has no surface to scatter from; load a mesh with faces.")
+    if count < 1:
+        raise ValueError(f"At least 1 scatterer is needed, got {count}.")
+    position, face = trimesh.sample.sample_surface(mesh, count, seed=int(random.integers(2**32)))
+    phase = random.uniform(0, 2 * np.pi, count)
+    return Scatterers(
+        position_m=position,
+        normal=mesh.face_normals[face],
+        reflectivity=np.sqrt(mesh.area / count) * np.exp(1j * phase),
+        mesh=mesh,
+    )
+
+
+def lit_amplitudes(scatterers: Scatterers, line_of_sight: Floats) -> NDArray[np.complex128]:
+    """Return the complex amplitude of every scatterer from one direction, (points,).
+
+    The power falls with the cosine of incidence (Lambert's projected area); what faces away or
+    is shaded by any part of the target returns nothing.
+
+    Args:
+        scatterers: points and the mesh that shades them.
+        line_of_sight: (3,) unit vector from radar to target, target frame.
+    """
+    cosine = -(scatterers.normal @ line_of_sight)
+    facing = np.flatnonzero(cosine > 0)
+    origins = scatterers.position_m[facing] + SURFACE_OFFSET_M * scatterers.normal[facing]
+    toward_radar = np.broadcast_to(-line_of_sight, origins.shape)
+    # The intersector caches embree's scene with the mesh's own hash, so building it is free.
+    shaded = RayMeshIntersector(scatterers.mesh).intersects_any(origins, toward_radar)
+    amplitude = np.zeros(len(cosine), dtype=np.complex128)
+    lit = facing[~shaded]
+    amplitude[lit] = scatterers.reflectivity[lit] * np.sqrt(cosine[lit])
+    return amplitude

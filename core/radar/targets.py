@@ -1,0 +1,151 @@
+"""Targets for simulation: meshes with the truth about their size and attitude."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+
+from core.arrays import Floats, frozen
+from core.geometry.grid import VoxelGrid
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LineFeature:
+    """A straight feature of a target whose length and attitude are known.
+
+    Attributes:
+        name: what a person calls it.
+        length_m: true length.
+        direction: (3,) unit attitude vector, target frame; its sign means nothing.
+    """
+
+    name: str
+    length_m: float
+    direction: Floats
+
+    def __post_init__(self) -> None:
+        direction = frozen(self.direction, np.float64, (3,), f"Direction of {self.name}")
+        object.__setattr__(
+            self,
+            "direction",
+            frozen(direction / np.linalg.norm(direction), np.float64, (3,), self.name),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Target:
+    """A body made of closed parts, in the target frame.
+
+    Attributes:
+        name: what a person calls it.
+        parts: closed meshes in metres; they may overlap.
+        features: true line features, empty where unknown.
+    """
+
+    name: str
+    parts: tuple[trimesh.Trimesh, ...]
+    features: tuple[LineFeature, ...] = ()
+
+    def mesh(self) -> trimesh.Trimesh:
+        """Return all parts as one mesh, inner faces of overlaps included."""
+        return trimesh.util.concatenate(list(self.parts))
+
+    def voxels(self, grid: VoxelGrid) -> NDArray[np.bool_]:
+        """Return which voxel centres lie inside a part, (nx, ny, nz): the truth to compare with.
+
+        Raises:
+            ValueError: a part is not closed, so that inside has no meaning.
+        """
+        inside = np.zeros(grid.shape, dtype=bool)
+        for number, part in enumerate(self.parts):
+            if not part.is_watertight:
+                raise ValueError(
+                    f"Part {number} of {self.name} is not closed, so that it has no inside; "
+                    "repair the mesh or leave the comparison out."
+                )
+            lower, upper = ((bound - grid.origin_m) / grid.spacing_m for bound in part.bounds)
+            start = np.clip(np.floor(lower).astype(int), 0, grid.shape)
+            stop = np.clip(np.ceil(upper).astype(int) + 1, 0, grid.shape)
+            if np.any(stop <= start):
+                continue
+            box = tuple(slice(a, b) for a, b in zip(start, stop, strict=True))
+            index = np.stack(np.meshgrid(*map(np.arange, start, stop), indexing="ij"), axis=-1)
+            centres = grid.origin_m + grid.spacing_m * index.reshape(-1, 3)
+            inside[box] |= part.contains(centres).reshape(tuple(stop - start))
+        return inside
+
+
+def tiangong_like(
+    *,
+    length_m: float = 10.4,
+    diameter_m: float = 3.35,
+    span_m: float = 17.0,
+    panel_width_m: float = 2.8,
+    panel_tilt_rad: float = np.deg2rad(25.0),
+) -> Target:
+    """Return a Tiangong-1-like space laboratory, flying along +x with panels along y.
+
+    Forward a laboratory cylinder of full diameter, behind it a narrower resource module with
+    the two solar panels, joined by a cone; at the front a docking ring. The panels, tilted about
+    y, and the two modules make it asymmetric along x and z, so that a mirrored hull is noticed.
+
+    Args:
+        length_m: from docking ring to tail.
+        diameter_m: of the laboratory.
+        span_m: from panel tip to panel tip.
+        panel_width_m: chord of the panels.
+        panel_tilt_rad: turn of the panels about y.
+
+    Source: length 10.4 m and greatest diameter 3.35 m are the published figures (China Manned
+    Space Agency, as in Encyclopaedia Britannica, "Tiangong"). The span is the order of
+    the published drawings' (panels about twice as wide as the body is long); modules' shares,
+    chord and tilt are ours.
+    """
+    radius = diameter_m / 2
+    ring_m, lab_m, cone_m = 0.06 * length_m, 0.48 * length_m, 0.10 * length_m
+    narrow = 0.75 * radius
+    ahead = length_m / 2
+    profile = [
+        (0.45 * radius, ahead),
+        (0.45 * radius, ahead - ring_m),
+        (radius, ahead - ring_m),
+        (radius, ahead - ring_m - lab_m),
+        (narrow, ahead - ring_m - lab_m - cone_m),
+        (narrow, -ahead),
+    ]
+    outline = np.array([(0.0, ahead), *profile, (0.0, -ahead)])[::-1]
+    body = trimesh.creation.revolve(outline, sections=96)
+    body.apply_transform(trimesh.geometry.align_vectors([0, 0, 1], [1, 0, 0]))
+    x_panel = -ahead + 0.2 * length_m
+    panels = [
+        _panel(
+            side,
+            root_m=narrow,
+            tip_m=span_m / 2,
+            width_m=panel_width_m,
+            tilt_rad=panel_tilt_rad,
+            x_m=x_panel,
+        )
+        for side in (-1, 1)
+    ]
+    return Target(
+        name="Tiangong-1-like laboratory",
+        parts=(body, *panels),
+        features=(
+            LineFeature(name="span", length_m=span_m, direction=np.array([0.0, 1.0, 0.0])),
+            LineFeature(name="length", length_m=length_m, direction=np.array([1.0, 0.0, 0.0])),
+            LineFeature(name="diameter", length_m=diameter_m, direction=np.array([0.0, 0.0, 1.0])),
+        ),
+    )
+
+
+def _panel(
+    side: int, *, root_m: float, tip_m: float, width_m: float, tilt_rad: float, x_m: float
+) -> trimesh.Trimesh:
+    """Return one solar panel, 0.12 m thick, from inside the body out to its tip."""
+    inner = 0.9 * root_m
+    panel = trimesh.creation.box(extents=(width_m, tip_m - inner, 0.12))
+    panel.apply_transform(trimesh.transformations.rotation_matrix(tilt_rad, [0, 1, 0]))
+    panel.apply_translation([x_m, side * (tip_m + inner) / 2, 0.0])
+    return panel
