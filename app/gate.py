@@ -115,6 +115,10 @@ async def _refuse(scope: Scope, receive: Receive, send: Send, status: int, sente
         await receive()
         await send({"type": "websocket.close", "code": 1008, "reason": sentence[:120]})
         return
+    # Closing over an unread body would reset the connection before the sentence is read.
+    limited = _limited(receive)
+    while (await limited()).get("more_body", False):
+        pass
     body = json.dumps({"detail": sentence}).encode()
     start = {
         "type": "http.response.start",
@@ -122,7 +126,6 @@ async def _refuse(scope: Scope, receive: Receive, send: Send, status: int, sente
         "headers": [
             (b"content-type", b"application/json"),
             (b"content-length", str(len(body)).encode()),
-            (b"connection", b"close"),
         ],
     }
     await _with_headers(send)(start)

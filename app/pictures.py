@@ -20,8 +20,11 @@ STEP_DB = -FLOOR_DB / 65535
 SHOWN_FLOOR_DB = -40.0
 """Level at which pictures turn dark before the analyst chooses another."""
 
-OPAQUE_ABOVE_FLOOR = 0.35
-"""Part of the shown dynamic range above which a picture in space hides what is behind it."""
+FADE = (0.15, 0.45)
+"""Parts of the shown dynamic range between which a picture in space turns from clear to opaque.
+
+Noise just above the floor must not speckle what is behind it.
+"""
 
 
 def encoded_levels(frame: Frame) -> NDArray[np.uint16]:
@@ -54,5 +57,5 @@ def colour_index(level_db: NDArray[Any], floor_db: float) -> NDArray[np.uint8]:
 def translucent_picture(level_db: NDArray[Any], floor_db: float) -> NDArray[np.uint8]:
     """Return levels (rows, columns) as RGBA whose dark parts let through what is behind."""
     index = colour_index(level_db, floor_db)
-    alpha = np.clip(index / (255 * OPAQUE_ABOVE_FLOOR), 0, 1) * 255
+    alpha = 255 * np.clip((index / 255 - FADE[0]) / (FADE[1] - FADE[0]), 0, 1)
     return np.dstack([colour_table()[index], alpha.astype(np.uint8)])

@@ -51,7 +51,7 @@ def serve(
             speed is out of range.
     """
     playback = Playback(speed_hz=speed_hz)
-    with _listening_socket(host, port) as listener:
+    with listening_socket(host, port) as listener:
         address = _address(host, listener.getsockname()[1])
 
         def announce() -> None:
@@ -60,7 +60,7 @@ def serve(
                 webbrowser.open(address)
 
         with workstation(source, settings, playback=playback) as app:
-            _Server(_uvicorn_config(app), announce).run(sockets=[listener])
+            WorkstationServer(app, announce).run(sockets=[listener])
 
 
 @contextmanager
@@ -83,20 +83,23 @@ def workstation(
         viser_server.stop()
 
 
-class _Server(uvicorn.Server):
+class WorkstationServer(uvicorn.Server):
     """uvicorn that announces itself, and for which Ctrl+C is a normal end."""
 
-    def __init__(self, config: uvicorn.Config, announce: Callable[[], None]) -> None:
-        super().__init__(config)
+    def __init__(self, app: FastAPI, announce: Callable[[], None]) -> None:
+        """Serve `app`, and call `announce` once it can be reached."""
+        super().__init__(_uvicorn_config(app))
         self._announce = announce
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Start, then announce."""
         await super().startup(sockets)
         if self.started:
             self._announce()
 
     @contextmanager
     def capture_signals(self) -> Iterator[None]:
+        """Take SIGINT and SIGTERM as orders to end."""
         # uvicorn raises the signals it caught again after it has shut down, which would end the
         # process with a traceback or by the signal; they have been obeyed by then.
         with super().capture_signals():
@@ -120,7 +123,7 @@ def _uvicorn_config(app: FastAPI) -> uvicorn.Config:
 
 
 @contextmanager
-def _listening_socket(host: str, port: int) -> Iterator[socket.socket]:
+def listening_socket(host: str, port: int) -> Iterator[socket.socket]:
     """Bind before anything else starts, so that a port in use costs nobody any time."""
     _check_loopback(host)
     family = socket.AF_INET6 if ":" in host else socket.AF_INET

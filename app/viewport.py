@@ -15,13 +15,20 @@ from core.hull.surface import Surface
 
 HULL_COLOUR = (168, 184, 204)
 OUTLINE_COLOUR = (64, 224, 208)
-SIGHT_COLOUR = (255, 180, 84)
+SIGHT_COLOUR = (240, 140, 20)
 PLANE_COLOUR = (96, 110, 135)
-AXIS_COLOURS = ((239, 98, 98), (122, 204, 102), (92, 148, 255))
+AXIS_COLOURS = ((214, 48, 48), (64, 160, 48), (48, 104, 235))
+"""More saturated than the page's, for the lights wash them out."""
 AXIS_NAMES = ("x along-track", "y cross-track", "z nadir")
 
 GRID_CELL_M = 1.0
 GRID_SECTION_M = 5.0
+
+SIGHT_REACH = (0.58, 0.42)
+"""Where the arrow of the line of sight begins and ends, in sides of the window from the centre."""
+
+PICTURE_GAP_M = 0.6
+"""Between the hull and the picture beside it."""
 
 CAMERA_DIRECTION = np.array([0.62, -0.66, -0.42])
 """From the target towards the default camera: ahead of it, to its side and above (−z is up)."""
@@ -36,7 +43,7 @@ class PicturePlane:
     Attributes:
         centre_m: (3,) of the picture, target frame.
         right, down: (3,) unit vectors of growing columns and growing rows.
-        normal: (3,) unit direction in which the picture is moved aside.
+        aside_m: (3,) by how much the picture stands beside its plane through the origin.
         rows, columns: slices of the image that lie within the window.
         width_m, height_m: size of the picture.
     """
@@ -44,7 +51,7 @@ class PicturePlane:
     centre_m: Floats
     right: Floats
     down: Floats
-    normal: Floats
+    aside_m: Floats
     rows: slice
     columns: slice
     width_m: float
@@ -78,18 +85,19 @@ class Viewport:
     def show(self, snapshot: Snapshot) -> None:
         """Bring the scene up to date; does nothing for what is already there."""
         with self._server.atomic():
-            if snapshot.surface is not self._hull_shown:
+            hull_is_new = snapshot.surface is not self._hull_shown
+            if hull_is_new:
                 self._show_hull(snapshot.surface)
-            if snapshot.shown is not self._frame_shown:
-                self._show_frame(snapshot.shown)
                 self._show_aspects(snapshot.records)
+            if hull_is_new or snapshot.shown is not self._frame_shown:
+                self._show_frame(snapshot.shown)
 
     def _prepare_view(self) -> None:
         server = self._server
         server.gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False)
         server.scene.configure_environment_map(None)
         server.scene.configure_default_lights(enabled=True, cast_shadow=False)
-        server.scene.add_light_ambient("/light/ambient", intensity=0.9)
+        server.scene.add_light_ambient("/light/ambient", intensity=0.5)
         server.scene.set_up_direction("-z")
         distance_m = 0.5 * self._side_m / np.tan(0.5 * CAMERA_FIELD_OF_VIEW_RAD) * 1.25
         direction = CAMERA_DIRECTION / np.linalg.norm(CAMERA_DIRECTION)
@@ -141,10 +149,10 @@ class Viewport:
         self._server.scene.remove_by_name("/frame")
         if record is None:
             return
-        tail, tip = (-(0.5 * self._side_m + away) * record.frame.line_of_sight for away in (5, 1))
+        tail, tip = (-away * self._side_m * record.frame.line_of_sight for away in SIGHT_REACH)
         self._arrow("/frame/sight", tail, tip, SIGHT_COLOUR, radius_m=0.12)
         self._label("/frame/sight/label", "line of sight", tail)
-        plane = picture_plane(record.frame, self._side_m)
+        plane = picture_plane(record.frame, self._side_m, self._hull_shown)
         if plane is not None:
             self._show_picture(record, plane)
 
@@ -163,8 +171,8 @@ class Viewport:
         )
         self._lines("/frame/border", [plane.border_m()], PLANE_COLOUR, 1.0)
         rings = [record.frame.projection.plane_points(ring) for ring in record.silhouette.rings]
-        aside = plane.centre_m @ plane.normal * plane.normal
-        self._lines("/frame/outline", [ring + aside for ring in rings], OUTLINE_COLOUR, 2.0)
+        beside = [ring + plane.aside_m for ring in rings]
+        self._lines("/frame/outline", beside, OUTLINE_COLOUR, 2.0)
 
     def _show_aspects(self, records: tuple[Record, ...]) -> None:
         """Mark from where each frame looked, as dots where its line of sight begins."""
@@ -174,9 +182,9 @@ class Viewport:
         sights = np.array([record.frame.line_of_sight for record in records])
         self._server.scene.add_point_cloud(
             "/aspects",
-            points=(-(0.5 * self._side_m + 5) * sights).astype(np.float32),
+            points=(-SIGHT_REACH[0] * self._side_m * sights).astype(np.float32),
             colors=SIGHT_COLOUR,
-            point_size=0.22,
+            point_size=0.16,
             point_shape="circle",
         )
 
@@ -210,12 +218,11 @@ class Viewport:
         self._server.scene.add_label(name, text, position=position, anchor="center-center")
 
 
-def picture_plane(frame: Frame, side_m: float) -> PicturePlane | None:
+def picture_plane(frame: Frame, side_m: float, hull: Surface | None) -> PicturePlane | None:
     """Return where the frame's picture stands, None for a perspective image.
 
-    The picture is cut to the window of `side_m` around the target and moved along its normal to
-    the edge of that window, on the side away from the default camera: in the plane through the
-    target the hull would hide it.
+    The picture is cut to the window of `side_m` around the target and moved along its normal: in
+    the plane through the target the hull would hide it.
     """
     if not frame.projection.is_affine:
         return None
@@ -229,19 +236,33 @@ def picture_plane(frame: Frame, side_m: float) -> PicturePlane | None:
             frame.projection.matrix[:, 3], frame.shape, size, strict=True
         )
     )
-    normal = frame.projection.viewing_direction()
-    normal = -normal if normal @ CAMERA_DIRECTION > 0 else normal
+    aside = _aside(frame.projection.viewing_direction(), side_m, hull)
     middle = np.array([0.5 * (cut.start + cut.stop - 1) for cut in (rows, columns)])
     return PicturePlane(
-        centre_m=to_plane(middle) + 0.5 * side_m * normal,
+        centre_m=to_plane(middle) + aside,
         right=right / size[1],
         down=down / size[0],
-        normal=normal,
+        aside_m=aside,
         rows=rows,
         columns=columns,
         width_m=float((columns.stop - columns.start) * size[1]),
         height_m=float((rows.stop - rows.start) * size[0]),
     )
+
+
+def _aside(normal: Floats, side_m: float, hull: Surface | None) -> Floats:
+    """Return by how much (3,) to move a picture along its normal for the default camera to see it.
+
+    Behind the hull; but a hull that is open there reaches the window's edge and would hide it, so
+    then the picture stands before its near end, like the section that the hull continues.
+    """
+    away = -normal if normal @ CAMERA_DIRECTION > 0 else normal
+    if hull is None or hull.is_empty:
+        return 0.5 * side_m * away
+    reach_m = hull.vertices_m @ away
+    if reach_m.max() < 0.45 * side_m:
+        return (float(reach_m.max()) + PICTURE_GAP_M) * away
+    return (float(reach_m.min()) - PICTURE_GAP_M) * away
 
 
 def _window(origin_px: float, count: int, half_px: float) -> slice:

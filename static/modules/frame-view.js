@@ -2,7 +2,7 @@
 
 import { fixed, roundSteps, withUnit } from "./numbers.js";
 
-const MARGIN = { left: 50, top: 6, right: 52, bottom: 42 };
+const MARGIN = { left: 50, top: 6, right: 62, bottom: 42 };
 const BAR = { gap: 14, width: 12 };
 const TEXT = "#8f9bad";
 const OUTLINE = "#40e0d0";
@@ -186,7 +186,7 @@ export class FrameView {
     context.translate(plot.x - 46, plot.y + plot.height / 2);
     context.rotate(-Math.PI / 2);
     context.textBaseline = "top";
-    context.fillText(`← range from the radar, ${unit}`, 0, 0);
+    context.fillText(`← range from the origin, ${unit}`, 0, 0);
     context.restore();
   }
 

@@ -1,0 +1,31 @@
+"""A workstation on a free port, in this process."""
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from app.playback import Playback
+from app.server import WorkstationServer, listening_socket, workstation
+from app.source import Source
+from core.reconstruction import ReconstructionSettings
+
+
+@contextmanager
+def running(source: Source, settings: ReconstructionSettings, playback: Playback) -> Iterator[str]:
+    """Serve `source` and give the page's address, without the last slash."""
+    ready = threading.Event()
+    with (
+        listening_socket("127.0.0.1", 0) as listener,
+        workstation(source, settings, playback=playback) as app,
+    ):
+        port = listener.getsockname()[1]
+        server = WorkstationServer(app, ready.set)
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
+        thread.start()
+        try:
+            assert ready.wait(20), "the server did not start"
+            yield f"http://127.0.0.1:{port}"
+        finally:
+            server.should_exit = True
+            thread.join(20)
+            assert not thread.is_alive(), "the server did not end"

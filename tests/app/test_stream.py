@@ -1,0 +1,135 @@
+import threading
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from app.playback import Playback
+from app.snapshot import Snapshot
+from app.source import Source
+from app.stream import LiveStream
+from core.frame import Frame
+from tests.app.synthetic import SETTINGS, frames, source
+
+
+@pytest.fixture
+def start() -> Iterator[Callable[..., LiveStream]]:
+    """Return a function that starts a stream; all are stopped at the end."""
+    started: list[LiveStream] = []
+    before = set(threading.enumerate())
+
+    def start_one(from_source: Source | None = None, *, playing: bool = True) -> LiveStream:
+        stream = LiveStream(
+            from_source or source(4),
+            SETTINGS,
+            playback=Playback(speed_hz=None, is_playing=playing),
+        )
+        started.append(stream)
+        stream.start()
+        return stream
+
+    yield start_one
+    for stream in started:
+        stream.stop()
+    assert set(threading.enumerate()) <= before
+
+
+def test_plays_every_frame_and_keeps_the_latest_hull(start, wait_for) -> None:
+    stream = start()
+    wait_for(lambda: stream.snapshot.status == "finished")
+    snapshot = stream.snapshot
+    assert [record.number for record in snapshot.records] == [1, 2, 3, 4]
+    assert snapshot.shown is snapshot.hull is snapshot.records[-1]
+    assert len(snapshot.surface.vertices_m) == snapshot.hull.vertex_count
+    volumes = [record.volume_m3 for record in snapshot.records]
+    assert volumes == sorted(volumes, reverse=True)
+
+
+def test_observers_see_each_frame_once_and_in_order(start, wait_for) -> None:
+    stream = start(playing=False)
+    seen: list[Snapshot] = []
+    stream.observe(seen.append)
+    stream.play()
+    wait_for(lambda: stream.snapshot.status == "finished")
+    counts = [len(snapshot.records) for snapshot in seen]
+    assert counts == sorted(counts)
+    assert set(counts) == {0, 1, 2, 3, 4}
+
+
+def test_nothing_appears_while_paused_and_one_frame_per_step(start, wait_for) -> None:
+    stream = start(playing=False)
+    stream.step()
+    wait_for(lambda: len(stream.snapshot.records) == 1)
+    threading.Event().wait(0.3)  # time in which a second frame would have been computed
+    assert len(stream.snapshot.records) == 1
+    assert stream.snapshot.status == "paused"
+    stream.step()
+    wait_for(lambda: len(stream.snapshot.records) == 2)
+
+
+def test_an_earlier_frame_is_shown_while_the_hull_stays_the_latest(start, wait_for) -> None:
+    stream = start()
+    wait_for(lambda: stream.snapshot.status == "finished")
+    stream.choose(2)
+    assert stream.snapshot.shown.number == 2
+    assert stream.snapshot.hull.number == 4
+    stream.choose(4)
+    assert stream.snapshot.chosen is None
+
+
+@pytest.mark.parametrize("number", [0, -1, 5])
+def test_frames_that_are_not_there_cannot_be_shown(start, wait_for, number: int) -> None:
+    stream = start()
+    wait_for(lambda: stream.snapshot.status == "finished")
+    with pytest.raises(ValueError, match=rf"4 frames have arrived so far; frame {number} cannot"):
+        stream.choose(number)
+
+
+def test_restart_asks_the_source_for_nothing_again(start, wait_for) -> None:
+    asked = []
+
+    def counted() -> Iterator[Frame]:
+        for frame in frames(3):
+            asked.append(frame)
+            yield frame
+
+    stream = start(Source(name="counted", frames=counted))
+    wait_for(lambda: stream.snapshot.status == "finished")
+    first = stream.snapshot
+    stream.restart()
+    wait_for(lambda: stream.snapshot.run == 2 and stream.snapshot.status == "finished")
+    assert len(asked) == 3
+    again = stream.snapshot
+    assert [r.volume_m3 for r in again.records] == [r.volume_m3 for r in first.records]
+
+
+def test_restart_in_the_middle_goes_on_with_the_rest(start, wait_for) -> None:
+    stream = start(playing=False)
+    stream.step()
+    wait_for(lambda: len(stream.snapshot.records) == 1)
+    stream.restart()
+    wait_for(lambda: stream.snapshot.status == "finished")
+    assert [record.frame.time_s for record in stream.snapshot.records] == [0, 6, 12, 18]
+
+
+def test_a_failing_source_gives_one_sentence_and_restart_tries_again(start, wait_for) -> None:
+    attempts = []
+
+    def breaks_first() -> Iterator[Frame]:
+        attempts.append(True)
+        yield from frames(2)
+        if len(attempts) == 1:
+            raise ValueError("The echoes of frame 3 hold NaN.")
+
+    stream = start(Source(name="breaking", frames=breaks_first))
+    wait_for(lambda: stream.snapshot.status == "failed")
+    assert stream.snapshot.message == "The echoes of frame 3 hold NaN."
+    assert len(stream.snapshot.records) == 2
+    stream.restart()
+    wait_for(lambda: stream.snapshot.status == "finished")
+    assert stream.snapshot.message == ""
+
+
+def test_a_source_without_frames_is_a_failure_that_says_so(start, wait_for) -> None:
+    stream = start(Source(name="an empty pass", frames=tuple))
+    wait_for(lambda: stream.snapshot.status == "failed")
+    assert stream.snapshot.message.startswith("an empty pass holds no frames")
