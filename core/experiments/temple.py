@@ -10,13 +10,12 @@ from scipy import ndimage
 from core.arrays import Floats
 from core.experiments.results import Figure, Results, Table
 from core.formats.middlebury import read_photographs
-from core.frame import Frame
 from core.geometry.grid import VoxelGrid
 from core.hull.bounds import hull_bounds_m
 from core.hull.surface import mask_surface
 from core.hull.view import View
 from core.hull.votes import VoteVolume
-from core.silhouettes.photograph import photograph_silhouette, threshold_silhouette
+from core.silhouettes.photograph import Photograph, photograph_silhouette, threshold_silhouette
 from core.silhouettes.silhouette import Silhouette
 
 Progress = Callable[[str, int, int], None]
@@ -43,7 +42,7 @@ def run_temple(
     All 16 views vote. The grid is what the silhouettes leave (`hull_bounds_m`); the true box is
     looked at only when the errors are taken. Beside it runs the same with one brightness threshold
     for all photographs. That fails because lit folds of the cloth under the object are brighter
-    than the object's shaded sides: at 0.12 the cloth stays in the hull, as phantoms far from the
+    than the object's shaded sides: at 0.12 cloth stays in the hull, as phantoms far from the
     object and as a brim around its base, and a threshold high enough to drop it cuts the object
     in two (at 0.25, error 15 %).
 
@@ -56,12 +55,16 @@ def run_temple(
         progress: told after every photograph, or None.
 
     Raises:
-        ValueError: the folder lacks files, or the hull is empty.
+        ValueError: a spacing that is not positive, a folder that lacks files, or an empty hull.
     """
     spacing_m = SPACING_M if spacing_m is None else spacing_m
-    frames = read_photographs(data)
-    ours = _hull(_views(frames, photograph_silhouette, "silhouettes", progress), spacing_m)
-    naive, grid = _hull(_views(frames, _naive_silhouette, "threshold", progress), spacing_m)
+    if not spacing_m > 0:
+        raise ValueError(f"Voxel spacing must be a positive length in metres, got {spacing_m}.")
+    photographs = read_photographs(data)
+    ours = _hull(_views(photographs, photograph_silhouette, "silhouettes", progress), spacing_m)
+    naive, grid = _hull(
+        _views(photographs, _naive_silhouette, "threshold", progress), 2 * spacing_m
+    )
     boxes_m = {
         "ours": _box_m(*ours),
         "naive": _box_m(naive, grid),
@@ -70,11 +73,12 @@ def run_temple(
     return Results(
         name="temple",
         settings={
-            "photographs": len(frames),
+            "photographs": len(photographs),
             "spacing_m": spacing_m,
-            "silhouettes": "Otsu's threshold refined by GrabCut",
-            "votes_needed": len(frames),
+            "silhouettes": "Otsu's threshold refined by GrabCut on colour",
+            "votes_needed": len(photographs),
             "naive_level": NAIVE_LEVEL,
+            "naive_spacing_m": 2 * spacing_m,  # its phantoms need a grid ten times as large
         },
         figures=_figures(boxes_m),
         tables=(_sides_table(boxes_m), _faces_table(boxes_m)),
@@ -88,21 +92,22 @@ def side_errors_percent(box_m: Floats) -> Floats:
     return errors
 
 
-def _naive_silhouette(frame: Frame) -> Silhouette:
-    return threshold_silhouette(frame, NAIVE_LEVEL)
+def _naive_silhouette(photograph: Photograph) -> Silhouette:
+    return threshold_silhouette(photograph.frame, NAIVE_LEVEL)
 
 
 def _views(
-    frames: Sequence[Frame],
-    silhouette_of: Callable[[Frame], Silhouette],
+    photographs: Sequence[Photograph],
+    silhouette_of: Callable[[Photograph], Silhouette],
     what: str,
     progress: Progress | None,
 ) -> list[View]:
     views = []
-    for frame in frames:
-        views.append(View(silhouette=silhouette_of(frame), projection=frame.projection))
+    for photograph in photographs:
+        silhouette = silhouette_of(photograph)
+        views.append(View(silhouette=silhouette, projection=photograph.frame.projection))
         if progress:
-            progress(what, len(views), len(frames))
+            progress(what, len(views), len(photographs))
     return views
 
 

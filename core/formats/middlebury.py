@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from core.arrays import Floats
 from core.frame import Frame
 from core.geometry.projection import Projection
+from core.silhouettes.photograph import Photograph
 
 PARAMETERS_PER_LINE = 21
 """K and R, nine numbers each, row by row, and the three of t."""
@@ -17,11 +18,11 @@ ROTATION_TOLERANCE = 1e-3
 """How far R Rᵀ may be from the identity; the data sets reach 1e-6."""
 
 
-def read_photographs(folder: Path) -> tuple[Frame, ...]:
+def read_photographs(folder: Path) -> tuple[Photograph, ...]:
     """Read the photographs that the one `*_par.txt` of a folder lists, in its order.
 
-    Each frame's amplitude is the picture's luma (ITU-R BT.601) from 0 to 1, as the file holds it,
-    not linearised. Its projection is perspective, the target frame is the data set's own, in
+    Each one's amplitude is the picture's luma (ITU-R BT.601) from 0 to 1, as the file holds it,
+    not linearised. The projection is perspective, the target frame is the data set's own, in
     metres. The files give no times; the photographs stand one second apart in listed order.
 
     Raises:
@@ -32,7 +33,7 @@ def read_photographs(folder: Path) -> tuple[Frame, ...]:
     algorithms", CVPR 2006, whose data sets define the form.
     """
     lines = _camera_lines(_camera_list(folder))
-    return tuple(_frame(folder, number, *line) for number, line in enumerate(lines))
+    return tuple(_photograph(folder, number, *line) for number, line in enumerate(lines))
 
 
 def camera_projection(intrinsics: Floats, rotation: Floats, translation_m: Floats) -> Projection:
@@ -106,31 +107,33 @@ def _camera_line(line: str, where: str) -> tuple[str, Floats]:
     return name, parameters
 
 
-def _frame(folder: Path, number: int, name: str, parameters: Floats) -> Frame:
+def _photograph(folder: Path, number: int, name: str, parameters: Floats) -> Photograph:
     intrinsics, rotation = parameters[:18].reshape(2, 3, 3)
     try:
         projection = camera_projection(intrinsics, rotation, parameters[18:])
     except ValueError as error:
         raise ValueError(f"Camera of {name}: {error}") from error
-    return Frame(
-        amplitude=_luma(folder / name),
+    colours = _colours(folder / name)
+    luma = cv2.cvtColor(colours.astype(np.float32) / np.float32(255), cv2.COLOR_RGB2GRAY)
+    frame = Frame(
+        amplitude=luma,
         projection=projection,
         time_s=float(number),
         sensor="optical",
         line_of_sight=projection.viewing_direction(),
         label=Path(name).stem,
     )
+    return Photograph(frame=frame, colours=colours)
 
 
-def _luma(path: Path) -> NDArray[np.float32]:
-    """Return a picture's luma from 0 to 1, (rows, columns)."""
+def _colours(path: Path) -> NDArray[np.uint8]:
+    """Return a picture's red, green and blue, (rows, columns, 3)."""
     if not path.is_file():
         raise ValueError(
             f"The list of cameras names {path.name}, which is not in {path.parent}; "
             "unpack the data set whole."
         )
-    picture = cv2.imdecode(np.fromfile(path, dtype=np.uint8), cv2.IMREAD_GRAYSCALE)
+    picture = cv2.imdecode(np.fromfile(path, dtype=np.uint8), cv2.IMREAD_COLOR_RGB)
     if picture is None:
         raise ValueError(f"{path.name} is no picture that OpenCV can read; is it cut off?")
-    luma: NDArray[np.float32] = picture.astype(np.float32) / np.float32(255)
-    return luma
+    return np.asarray(picture, dtype=np.uint8)

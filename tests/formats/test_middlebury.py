@@ -15,7 +15,7 @@ def _write(folder, *, count=2, names=("a.png", "b.png"), numbers=None, pictures=
     text = "\n".join([str(count), *(f"{name} {words}" for name in names), ""])
     (folder / "trial_par.txt").write_text(text)
     picture = np.zeros((40, 60, 3), dtype=np.uint8)
-    picture[10, 20] = 51
+    picture[10, 20] = 0, 51, 102  # OpenCV writes blue, green, red
     for name in pictures:
         cv2.imwrite(str(folder / name), picture)
     return folder
@@ -30,10 +30,12 @@ def test_a_camera_that_gives_x_and_y_becomes_row_and_column():
 
 
 def test_photographs_come_in_listed_order(tmp_path):
-    first, second = read_photographs(_write(tmp_path, names=("b.png", "a.png")))
+    photographs = read_photographs(_write(tmp_path, names=("b.png", "a.png")))
+    first, second = (photograph.frame for photograph in photographs)
     assert (first.label, second.label) == ("b", "a")
     assert first.shape == (40, 60)
-    assert first.amplitude[10, 20] == pytest.approx(0.2)
+    assert first.amplitude[10, 20] == pytest.approx(0.299 * 0.4 + 0.587 * 0.2)
+    assert photographs[0].colours[10, 20].tolist() == [102, 51, 0]
     assert first.sensor == "optical"
 
 
@@ -69,10 +71,10 @@ def test_a_picture_cut_off_is_refused(tmp_path):
 
 
 def test_the_temple_stands_in_the_middle_of_its_photographs(shared_data):
-    frames = read_photographs(shared_data("temple"))
-    assert len(frames) == 16
+    photographs = read_photographs(shared_data("temple"))
+    assert len(photographs) == 16
     middle_m = np.array([-0.022, 0.102, 0.025])  # of the true bounding box
-    for frame in frames:
-        row, column = frame.projection.image_points(middle_m)
+    for photograph in photographs:
+        row, column = photograph.frame.projection.image_points(middle_m)
         assert 150 < row < 330
         assert 150 < column < 490

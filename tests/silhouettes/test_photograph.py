@@ -3,13 +3,13 @@ import pytest
 
 from core.frame import Frame
 from core.geometry.projection import Projection
-from core.silhouettes.photograph import photograph_silhouette, threshold_silhouette
+from core.silhouettes.photograph import Photograph, photograph_silhouette, threshold_silhouette
 
 CAMERA = Projection(matrix=np.array([[0.0, 100, 0, 40], [100, 0, 0, 60], [0, 0, 1, 1]]))
 
 
 def _photograph(amplitude, sensor="optical"):
-    return Frame(
+    frame = Frame(
         amplitude=amplitude,
         projection=CAMERA,
         time_s=0.0,
@@ -17,6 +17,8 @@ def _photograph(amplitude, sensor="optical"):
         line_of_sight=np.array([0.0, 0, 1]),
         label="trial",
     )
+    colours = np.repeat(np.round(255 * np.asarray(amplitude))[..., None], 3, axis=2)
+    return Photograph(frame=frame, colours=colours)
 
 
 @pytest.fixture
@@ -36,21 +38,21 @@ def still_life():
 
 
 def test_shade_belongs_to_the_object_and_the_cloth_does_not(still_life):
-    frame, block = still_life
-    silhouette = photograph_silhouette(frame)
+    photograph, block = still_life
+    silhouette = photograph_silhouette(photograph)
     assert silhouette.claim == "complete"
     assert silhouette.area_px() == pytest.approx(np.count_nonzero(block), rel=0.01)
     points = np.concatenate(silhouette.rings)
     assert points.min(axis=0) == pytest.approx([29.5, 49.5], abs=0.6)
     assert points.max(axis=0) == pytest.approx([89.5, 109.5], abs=0.6)
     assert len(silhouette.rings) == 2  # the outline and the window
-    otsu = threshold_silhouette(frame, 0.3)
+    otsu = threshold_silhouette(photograph.frame, 0.3)
     assert otsu.area_px() < 0.85 * silhouette.area_px()
 
 
 def test_the_same_photograph_gives_the_same_outline(still_life):
-    frame, _ = still_life
-    first, second = photograph_silhouette(frame), photograph_silhouette(frame)
+    photograph, _ = still_life
+    first, second = photograph_silhouette(photograph), photograph_silhouette(photograph)
     for a, b in zip(first.rings, second.rings, strict=True):
         np.testing.assert_array_equal(a, b)
 
@@ -58,7 +60,7 @@ def test_the_same_photograph_gives_the_same_outline(still_life):
 def test_a_threshold_takes_whatever_is_brighter():
     amplitude = np.zeros((20, 20))
     amplitude[5:10, 5:15] = 1.0
-    assert threshold_silhouette(_photograph(amplitude), 0.5).area_px() == pytest.approx(
+    assert threshold_silhouette(_photograph(amplitude).frame, 0.5).area_px() == pytest.approx(
         50, rel=0.02
     )
 
