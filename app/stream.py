@@ -40,7 +40,11 @@ class LiveStream:
         self._changed = threading.Condition(threading.RLock())
         self._stopping = False
         self._thread = threading.Thread(target=self._work, name="live-stream", daemon=True)
-        self._snapshot = Snapshot(run=1, status="preparing", speed_hz=self._playback.speed_hz)
+        self._snapshot = Snapshot(
+            run=1,
+            status="preparing" if self._playback.is_playing else "paused",
+            speed_hz=self._playback.speed_hz,
+        )
 
     @property
     def snapshot(self) -> Snapshot:
