@@ -43,6 +43,7 @@ class Snapshot:
 
     Attributes:
         run: grows with every restart, so that frame 3 of one run is not taken for another's.
+        serial: grows with every change, so that an answer that arrives late is known as old.
         status: what the live loop is doing.
         message: why it failed, empty otherwise.
         speed_hz: frames per second, None for as fast as they are computed.
@@ -52,6 +53,7 @@ class Snapshot:
     """
 
     run: int
+    serial: int = 0
     status: Status
     message: str = ""
     speed_hz: float | None

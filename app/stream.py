@@ -132,9 +132,9 @@ class LiveStream:
         return "playing" if snapshot.records else "preparing"
 
     def _publish(self, snapshot: Snapshot) -> None:
-        self._snapshot = snapshot
+        self._snapshot = replace(snapshot, serial=self._snapshot.serial + 1)
         for observer in self._observers:
-            observer(snapshot)
+            observer(self._snapshot)
         self._changed.notify_all()
 
     def _work(self) -> None:

@@ -16,6 +16,7 @@ import { Transport } from "./transport.js";
 const part = (id) => document.getElementById(id);
 
 let state = null;
+let newestSerial = -1;
 let frameOnShow = "";
 let isFetching = false;
 let linkWasLost = false;
@@ -47,6 +48,9 @@ async function command(path, body) {
 }
 
 function showState(next) {
+  // The answer to an order may arrive after the news of what followed it.
+  if (next.serial < newestSerial) return;
+  newestSerial = next.serial;
   state = next;
   part("source-name").textContent = state.source.name;
   part("source-description").textContent = state.source.description;
@@ -113,7 +117,7 @@ async function bringFrame() {
     while (state.shown !== null && frameOnShow !== frameKey()) await fetchFrame(frameKey());
     if (state.shown === null) clearFrame();
   } catch (error) {
-    complaint = error.message;
+    if (!linkWasLost) complaint = error.message;
     showBanner();
   } finally {
     isFetching = false;
@@ -123,12 +127,15 @@ async function bringFrame() {
 const frameKey = () => `${state.run}/${state.shown}`;
 
 async function fetchFrame(key) {
-  const number = state.shown;
-  const [frame, levels] = await Promise.all([
-    getJson(`/api/frames/${number}`),
-    getLevels(number),
-  ]);
-  if (Number(key.split("/")[0]) !== state.run) return;
+  const [run, number] = key.split("/").map(Number);
+  let frame, levels;
+  try {
+    [frame, levels] = await Promise.all([getJson(`/api/frames/${number}`), getLevels(number)]);
+  } catch (error) {
+    if (run === state.run) throw error;
+  }
+  // Restarted in the meantime: the frame belongs to a run that is over.
+  if (run !== state.run) return;
   frameOnShow = key;
   frameView.setWindow(part("zoom-target").ariaPressed === "true" ? state.window_m : null);
   frameView.setFrame(frame, levels);
@@ -180,6 +187,8 @@ function showLink(link) {
   part("link").dataset.link = link;
   if (link === "connected" && linkWasLost) {
     frameOnShow = "";
+    newestSerial = -1;
+    complaint = "";
     // viser's client tries again only while its frame has the focus.
     part("viewport").contentWindow.location.reload();
   }

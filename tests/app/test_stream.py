@@ -53,6 +53,8 @@ def test_observers_see_each_frame_once_and_in_order(start, wait_for) -> None:
     counts = [len(snapshot.records) for snapshot in seen]
     assert counts == sorted(counts)
     assert set(counts) == {0, 1, 2, 3, 4}
+    serials = [snapshot.serial for snapshot in seen]
+    assert serials == sorted(set(serials))
 
 
 def test_nothing_appears_while_paused_and_one_frame_per_step(start, wait_for) -> None:
