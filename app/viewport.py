@@ -10,7 +10,6 @@ from viser import transforms
 from app.pictures import SHOWN_FLOOR_DB, translucent_picture
 from app.snapshot import Record, Snapshot
 from core.arrays import Floats
-from core.frame import Frame
 from core.hull.surface import Surface
 
 HULL_COLOUR = (168, 184, 204)
@@ -29,6 +28,9 @@ SIGHT_REACH = (0.58, 0.42)
 
 PICTURE_GAP_M = 0.6
 """Between the hull and the picture beside it."""
+
+PICTURE_MARGIN_M = 1.5
+"""Shown of a frame around its silhouette."""
 
 CAMERA_DIRECTION = np.array([0.62, -0.66, -0.42])
 """From the target towards the default camera: ahead of it, to its side and above (−z is up)."""
@@ -81,6 +83,16 @@ class Viewport:
         self._frame_shown: Record | None = None
         self._prepare_view()
         self._add_reference()
+        # Kept and updated: a new picture is white until the browser has decoded it.
+        self._picture = server.scene.add_image(
+            "/picture",
+            np.zeros((2, 2, 4), dtype=np.uint8),
+            render_width=1e-3,
+            render_height=1e-3,
+            format="png",
+            cast_shadow=False,
+            receive_shadow=False,
+        )
 
     def show(self, snapshot: Snapshot) -> None:
         """Bring the scene up to date; does nothing for what is already there."""
@@ -99,7 +111,7 @@ class Viewport:
         server.scene.configure_default_lights(enabled=True, cast_shadow=False)
         server.scene.add_light_ambient("/light/ambient", intensity=0.5)
         server.scene.set_up_direction("-z")
-        distance_m = 0.5 * self._side_m / np.tan(0.5 * CAMERA_FIELD_OF_VIEW_RAD) * 1.25
+        distance_m = 0.5 * self._side_m / np.tan(0.5 * CAMERA_FIELD_OF_VIEW_RAD) * 1.3
         direction = CAMERA_DIRECTION / np.linalg.norm(CAMERA_DIRECTION)
         server.initial_camera.fov = float(CAMERA_FIELD_OF_VIEW_RAD)
         server.initial_camera.far = 40 * self._side_m
@@ -147,28 +159,23 @@ class Viewport:
     def _show_frame(self, record: Record | None) -> None:
         self._frame_shown = record
         self._server.scene.remove_by_name("/frame")
+        plane = None if record is None else picture_plane(record, self._side_m, self._hull_shown)
+        self._picture.visible = plane is not None
         if record is None:
             return
         tail, tip = (-away * self._side_m * record.frame.line_of_sight for away in SIGHT_REACH)
         self._arrow("/frame/sight", tail, tip, SIGHT_COLOUR, radius_m=0.12)
         self._label("/frame/sight/label", "line of sight", tail)
-        plane = picture_plane(record.frame, self._side_m, self._hull_shown)
         if plane is not None:
             self._show_picture(record, plane)
 
     def _show_picture(self, record: Record, plane: PicturePlane) -> None:
         level = record.frame.decibels(floor_db=SHOWN_FLOOR_DB)[plane.rows, plane.columns]
-        self._server.scene.add_image(
-            "/frame/picture",
-            translucent_picture(level, SHOWN_FLOOR_DB),
-            render_width=plane.width_m,
-            render_height=plane.height_m,
-            format="png",
-            wxyz=plane.quaternion_wxyz(),
-            position=plane.centre_m,
-            cast_shadow=False,
-            receive_shadow=False,
-        )
+        self._picture.image = translucent_picture(level, SHOWN_FLOOR_DB)
+        self._picture.render_width = plane.width_m
+        self._picture.render_height = plane.height_m
+        self._picture.wxyz = plane.quaternion_wxyz()
+        self._picture.position = plane.centre_m
         self._lines("/frame/border", [plane.border_m()], PLANE_COLOUR, 1.0)
         rings = [record.frame.projection.plane_points(ring) for ring in record.silhouette.rings]
         beside = [ring + plane.aside_m for ring in rings]
@@ -218,23 +225,23 @@ class Viewport:
         self._server.scene.add_label(name, text, position=position, anchor="center-center")
 
 
-def picture_plane(frame: Frame, side_m: float, hull: Surface | None) -> PicturePlane | None:
-    """Return where the frame's picture stands, None for a perspective image.
+def picture_plane(record: Record, side_m: float, hull: Surface | None) -> PicturePlane | None:
+    """Return where a frame's picture stands, None for a perspective image.
 
-    The picture is cut to the window of `side_m` around the target and moved along its normal: in
-    the plane through the target the hull would hide it.
+    The picture is cut to the silhouette and a margin, or to the window of `side_m` around the
+    target where nothing was found, and moved along its normal: in the plane through the target
+    the hull would hide it.
     """
+    frame = record.frame
     if not frame.projection.is_affine:
         return None
     to_plane = frame.projection.plane_points
     corner, right_end, down_end = to_plane(np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]))
     right, down = right_end - corner, down_end - corner
-    size = np.linalg.norm(down), np.linalg.norm(right)
+    size = float(np.linalg.norm(down)), float(np.linalg.norm(right))
     rows, columns = (
-        _window(origin, count, 0.5 * side_m / float(spacing))
-        for origin, count, spacing in zip(
-            frame.projection.matrix[:, 3], frame.shape, size, strict=True
-        )
+        slice(int(first), int(last) + 1)
+        for first, last in zip(*_window(record, np.array(size), side_m), strict=True)
     )
     aside = _aside(frame.projection.viewing_direction(), side_m, hull)
     middle = np.array([0.5 * (cut.start + cut.stop - 1) for cut in (rows, columns)])
@@ -265,7 +272,14 @@ def _aside(normal: Floats, side_m: float, hull: Surface | None) -> Floats:
     return (float(reach_m.min()) - PICTURE_GAP_M) * away
 
 
-def _window(origin_px: float, count: int, half_px: float) -> slice:
-    first = int(np.clip(np.floor(origin_px - half_px), 0, count - 2))
-    last = int(np.clip(np.ceil(origin_px + half_px), first + 1, count - 1))
-    return slice(first, last + 1)
+def _window(record: Record, spacing_m: Floats, side_m: float) -> tuple[Floats, Floats]:
+    """Return the first and the last (row, column) of the part of a frame to show in space."""
+    if record.silhouette.is_empty:
+        origin = record.frame.projection.matrix[:, 3]
+        first, last = origin - 0.5 * side_m / spacing_m, origin + 0.5 * side_m / spacing_m
+    else:
+        seen = np.concatenate(record.silhouette.rings)
+        margin = PICTURE_MARGIN_M / spacing_m
+        first, last = seen.min(axis=0) - margin, seen.max(axis=0) + margin
+    end = np.array(record.frame.shape) - 1
+    return np.clip(np.floor(first), 0, end - 1), np.clip(np.ceil(last), 1, end)

@@ -56,20 +56,32 @@ export class FrameView {
   /** Colour the levels, one pixel each. */
   #paint() {
     if (!this.#levels || !this.#colours) return;
-    const { rows, columns, numbers, floorDb, stepDb } = this.#levels;
+    const { rows, columns, numbers } = this.#levels;
     this.#picture.width = columns;
     this.#picture.height = rows;
     const context = this.#picture.getContext("2d");
     const image = context.createImageData(columns, rows);
+    const pixels = new Uint32Array(image.data.buffer);
+    const colourOf = this.#coloursOfNumbers();
     for (let place = 0; place < numbers.length; place += 1) {
-      const decibels = floorDb + numbers[place] * stepDb;
-      const share = Math.min(Math.max(1 - decibels / this.#floorDb, 0), 1);
-      const colour = this.#colours[Math.floor(share * 255 + 0.5)];
-      image.data.set(colour, 4 * place);
-      image.data[4 * place + 3] = 255;
+      pixels[place] = colourOf[numbers[place]];
     }
     context.putImageData(image, 0, 0);
     this.#draw();
+  }
+
+  /** The pixel, in the machine's byte order, for each of the 65536 numbers a level can have. */
+  #coloursOfNumbers() {
+    const { floorDb, stepDb } = this.#levels;
+    const bytes = new Uint8Array(4 * this.#colours.length);
+    this.#colours.forEach((colour, index) => bytes.set([...colour, 255], 4 * index));
+    const pixelOfIndex = new Uint32Array(bytes.buffer);
+    const colourOf = new Uint32Array(65536);
+    for (let number = 0; number < colourOf.length; number += 1) {
+      const share = 1 - (floorDb + number * stepDb) / this.#floorDb;
+      colourOf[number] = pixelOfIndex[Math.floor(Math.min(Math.max(share, 0), 1) * 255 + 0.5)];
+    }
+    return colourOf;
   }
 
   #draw() {
@@ -140,9 +152,12 @@ export class FrameView {
     context.clip();
     context.beginPath();
     for (const ring of this.#frame.silhouette.rings) {
-      for (const [row, column] of ring) context.lineTo(...onCanvas(plot, row, column));
+      ring.forEach(([row, column], index) => {
+        const place = onCanvas(plot, row, column);
+        if (index === 0) context.moveTo(...place);
+        else context.lineTo(...place);
+      });
       context.closePath();
-      context.moveTo(0, 0);
     }
     context.strokeStyle = OUTLINE;
     context.lineWidth = 1.5;
@@ -161,7 +176,7 @@ export class FrameView {
     context.strokeStyle = "#3b475b";
     context.textAlign = "center";
     context.textBaseline = "top";
-    for (const { value, text } of roundSteps(firstCross, firstCross + lastCrossOffset, 6)) {
+    for (const { value, text } of roundSteps(firstCross, firstCross + lastCrossOffset, 8)) {
       const x = plot.x + (value - firstCross) * perMetre;
       tick(context, x, plot.y + plot.height + 1, 0, 4);
       context.fillText(text, x, plot.y + plot.height + 7);
@@ -169,7 +184,7 @@ export class FrameView {
     context.textAlign = "right";
     context.textBaseline = "middle";
     const lastRange = firstRange + plot.rows * plot.rowM;
-    for (const { value, text } of roundSteps(firstRange, lastRange, 6)) {
+    for (const { value, text } of roundSteps(firstRange, lastRange, 8)) {
       const y = plot.y + (value - firstRange) * perMetre;
       tick(context, plot.x - 1, y, -4, 0);
       context.fillText(text, plot.x - 8, y);

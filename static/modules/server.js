@@ -60,7 +60,9 @@ async function answered(path, options) {
 
 function littleEndian16(buffer) {
   const view = new DataView(buffer);
-  return Uint16Array.from({ length: buffer.byteLength / 2 }, (_, index) =>
-    view.getUint16(2 * index, true),
-  );
+  const numbers = new Uint16Array(buffer.byteLength / 2);
+  for (let place = 0; place < numbers.length; place += 1) {
+    numbers[place] = view.getUint16(2 * place, true);
+  }
+  return numbers;
 }
