@@ -1,12 +1,13 @@
 """The algorithm on one page: frames in, a hull that shrinks view by view out."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from core.arrays import Floats
 from core.frame import Frame
 from core.geometry.grid import VoxelGrid
 from core.geometry.projection import Projection
+from core.hull.registration import centroid_registered
 from core.hull.shadow import CarvingRule, carving_view
 from core.hull.surface import Surface, hull_surface
 from core.hull.view import View
@@ -23,13 +24,19 @@ class ReconstructionSettings:
     Attributes:
         spacing_m: voxel spacing.
         side_m: side of the cubic grid, centred on the target frame's origin.
-        rule: "shadow" for outlines of the lit side (design: a sound rule), "strict" as the paper.
+        rule: "shadow" carves nothing behind the first return, "strict" is the paper's rule.
+        tolerated_misses: a voxel stays while at most this many views miss it, so that the vote
+            threshold T of eq. 25 is the number of views less this; 0 is the paper's T = I.
+        registers_centroids: whether frames are shifted to a common centroid (section III.D),
+            for frames whose offsets are unknown.
         extraction: how silhouettes are taken from frames.
     """
 
     spacing_m: float = 0.15
     side_m: float = 24.0
     rule: CarvingRule = "shadow"
+    tolerated_misses: int = 0
+    registers_centroids: bool = False
     extraction: ExtractionSettings = field(default_factory=ExtractionSettings)
 
 
@@ -41,7 +48,8 @@ class Step:
         number: how many frames have voted, this one included.
         frame: the frame that voted.
         silhouette: its outline.
-        surface: the hull of all frames so far, all views voting.
+        surface: the hull of all frames so far.
+        threshold: votes that a voxel of it has at least.
         extents: along x, y, z; empty when the hull is.
         unobserved: (3,) direction that no frame so far constrains, or None.
     """
@@ -50,6 +58,7 @@ class Step:
     frame: Frame
     silhouette: Silhouette
     surface: Surface
+    threshold: int
     extents: tuple[Extent, ...]
     unobserved: Floats | None
 
@@ -68,15 +77,20 @@ def reconstruct(
     projections: list[Projection] = []
     for number, frame in enumerate(frames, start=1):
         silhouette = extract_silhouette(frame, settings.extraction)
+        if settings.registers_centroids:
+            shifted = centroid_registered(silhouette, frame.projection)
+            frame = replace(frame, projection=shifted)
         view = View(silhouette=silhouette, projection=frame.projection)
         volume.add(carving_view(view, settings.rule))
         projections.append(frame.projection)
-        surface = hull_surface(volume)
+        threshold = max(1, number - settings.tolerated_misses)
+        surface = hull_surface(volume, threshold)
         yield Step(
             number=number,
             frame=frame,
             silhouette=silhouette,
             surface=surface,
+            threshold=threshold,
             extents=() if surface.is_empty else axis_extents(surface, grid),
             unobserved=unobserved_direction(projections),
         )

@@ -156,8 +156,9 @@ def random_views_track(
 ) -> LineOfSightTrack:
     """Return bursts of pulses from random directions all over the sphere ("wide scope").
 
-    In each burst the line of sight turns by `turn_rad` at a constant rate about a random axis
-    perpendicular to it; a second lies between bursts.
+    In each burst the line of sight turns at a constant rate about a random axis perpendicular to
+    it, by `turn_rad` from half a pulse before the first to half a pulse after the last; a second
+    lies between bursts.
 
     Raises:
         ValueError: fewer than one view, fewer than two pulses a view, or no turn.
@@ -167,17 +168,16 @@ def random_views_track(
             "Random views need at least 1 view, 2 pulses a view and a turn above zero; got "
             f"{views} views of {pulses_per_view} pulses turning {turn_rad} rad."
         )
-    duration_s = (pulses_per_view - 1) / pulse_repetition_frequency_hz
+    duration_s = pulses_per_view / pulse_repetition_frequency_hz
     middle = random.normal(size=(views, 3))
     middle /= np.linalg.norm(middle, axis=1, keepdims=True)
     across = np.cross(middle, random.normal(size=(views, 3)))
     across /= np.linalg.norm(across, axis=1, keepdims=True)
-    angle = np.linspace(-0.5, 0.5, pulses_per_view)[None, :, None] * turn_rad
+    share = (np.arange(pulses_per_view) + 0.5) / pulses_per_view
+    angle = (share[None, :, None] - 0.5) * turn_rad
     line_of_sight = np.cos(angle) * middle[:, None] + np.sin(angle) * across[:, None]
     direction = np.cos(angle) * across[:, None] - np.sin(angle) * middle[:, None]
-    time = np.arange(views)[:, None] * (duration_s + 1) + np.linspace(
-        0, duration_s, pulses_per_view
-    )
+    time = np.arange(views)[:, None] * (duration_s + 1) + share * duration_s
     return LineOfSightTrack(
         time_s=time.ravel(),
         line_of_sight=line_of_sight.reshape(-1, 3),

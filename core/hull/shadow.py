@@ -25,7 +25,7 @@ def carving_view(view: View, rule: CarvingRule) -> View:
     "strict" is the paper's: the outline as it stands. "shadow" fills outlines that claim only
     the lit side away from the radar, and leaves complete ones as they are.
     """
-    if rule == "strict" or view.silhouette.claim == "complete" or view.silhouette.is_empty:
+    if rule == "strict" or view.silhouette.claim == "complete":
         return view
     return View(silhouette=filled_away_from_radar(view.silhouette), projection=view.projection)
 
@@ -35,6 +35,8 @@ def filled_away_from_radar(silhouette: Silhouette) -> Silhouette:
 
     The filling reaches ten image heights past the last row, further than any grid.
     """
+    if silhouette.is_empty:
+        return silhouette
     rows = silhouette.image_shape[0]
     far_row = 10.0 * rows + max(float(ring[:, 0].max()) for ring in silhouette.rings)
     swept = [

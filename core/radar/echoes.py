@@ -1,6 +1,6 @@
 """Echo simulation: what a radar would receive from surface scatterers."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 
 import finufft
@@ -25,6 +25,7 @@ def simulate_echoes(
     signal_to_noise_db: float,
     random: np.random.Generator,
     shadow_step_rad: float = np.deg2rad(3.5),
+    progress: Callable[[int, int], None] = lambda _done, _total: None,
 ) -> PhaseHistory:
     """Return the phase history of a self-shadowing target along a track.
 
@@ -41,6 +42,7 @@ def simulate_echoes(
             noise power, both per pulse and frequency sample.
         random: for the noise.
         shadow_step_rad: largest turn over which the lit side is held.
+        progress: told how many pulses are done, of how many.
 
     Raises:
         ValueError: the target is larger than the waveform's unambiguous range.
@@ -63,6 +65,7 @@ def simulate_echoes(
             track.line_of_sight[start:stop],
             frequency,
         )
+        progress(stop, len(track))
     noise_power = scatterers.mean_echo_power() * 10 ** (-signal_to_noise_db / 10)
     samples += receiver_noise(samples.shape, noise_power, random)
     return PhaseHistory(samples=samples, frequency_hz=frequency, track=track)

@@ -46,18 +46,30 @@ def frames(history: PhaseHistory, settings: ImagingSettings | None = None) -> It
         ValueError: the line of sight turns too little, or the echoes are ambiguous in the image.
     """
     settings = settings or ImagingSettings()
-    intervals = divide(
+    for interval in _intervals(history, settings):
+        yield polar_format_frame(history, interval, settings)
+
+
+def frame_count(history: PhaseHistory, settings: ImagingSettings | None = None) -> int:
+    """Return how many frames `frames` will yield."""
+    return len(_intervals(history, settings or ImagingSettings()))
+
+
+def _intervals(history: PhaseHistory, settings: ImagingSettings) -> tuple[CoherentInterval, ...]:
+    return divide(
         history.track,
         wavelength_m=history.wavelength_m,
         cross_range_resolution_m=settings.cross_range_resolution_m,
         overlap=settings.overlap,
     )
-    for interval in intervals:
-        yield polar_format_frame(history, interval, settings)
 
 
 def polar_format_frame(
-    history: PhaseHistory, interval: CoherentInterval, settings: ImagingSettings
+    history: PhaseHistory,
+    interval: CoherentInterval,
+    settings: ImagingSettings,
+    *,
+    label: str = "",
 ) -> Frame:
     """Return the polar-format image of one coherent interval.
 
@@ -110,6 +122,7 @@ def polar_format_frame(
         projection=projection,
         time_s=float(track.time_s[interval.middle]),
         sensor="radar",
+        label=label,
         line_of_sight=range_axis,
         row_spacing_m=settings.pixel_spacing_m,
         column_spacing_m=settings.pixel_spacing_m,

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import Literal
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
+from skimage.draw import polygon
 
 from core.arrays import Floats, frozen
 
@@ -56,15 +56,15 @@ class Silhouette:
         return float(sum(clockwise_area_px(ring) for ring in self.rings))
 
     def mask(self) -> NDArray[np.bool_]:
-        """Return a raster of the outline, (rows, columns), for display and morphology only.
+        """Return the pixels whose centres lie inside, (rows, columns), for display and brushes.
 
-        It is cut at the pixel grid (1/256 pixel inside); votes never look at it.
+        Votes never look at it.
         """
-        raster = np.zeros(self.image_shape, dtype=np.uint8)
-        polygons = [np.round(ring[:, ::-1] * 256).astype(np.int32) for ring in self.rings]
-        if polygons:
-            cv2.fillPoly(raster, polygons, 1, lineType=cv2.LINE_8, shift=8)
-        return raster.astype(bool)
+        raster = np.zeros(self.image_shape, dtype=bool)
+        for ring in self.rings:
+            rows, columns = polygon(ring[:, 0], ring[:, 1], self.image_shape)
+            raster[rows, columns] ^= True
+        return raster
 
 
 def clockwise_area_px(ring: Floats) -> float:

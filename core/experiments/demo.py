@@ -1,0 +1,114 @@
+"""The built-in demo: three passes of a Tiangong-1-like laboratory over Beijing."""
+
+from collections.abc import Iterator
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+
+from core.frame import Frame
+from core.geometry.orbit import (
+    MeanElements,
+    Station,
+    line_of_sight_track,
+    passes,
+    satellite_from_elements,
+)
+from core.geometry.track import LineOfSightTrack
+from core.radar.echoes import simulate_echoes
+from core.radar.imaging import ImagingSettings, polar_format_frame
+from core.radar.intervals import CoherentInterval, divide
+from core.radar.scatterers import surface_scatterers
+from core.radar.targets import tiangong_like
+from core.radar.waveform import Waveform
+
+DEMO_ORBIT = MeanElements(
+    name="Tiangong-1-like",
+    epoch_utc=datetime(2016, 3, 11, tzinfo=UTC) + timedelta(days=0.47512016),
+    inclination_deg=42.7628,
+    node_deg=110.5320,
+    eccentricity=0.0009524,
+    argument_of_perigee_deg=97.7639,
+    mean_anomaly_deg=50.1243,
+    mean_motion_rev_per_day=15.59909646,
+    drag_per_earth_radius=2.1761e-4,
+)
+"""The elements of Tiangong-1 (catalogue number 37820) of day 71.475 of 2016, as published by
+USSPACECOM."""
+
+DEMO_STATION = Station(latitude_deg=39.9, longitude_deg=116.4, height_m=88.0, name="Beijing")
+
+DEMO_PASSES = (0, 1, 7)
+"""Which passes after 2016-03-11 15:00 UTC: culminating 42° high in the north, 57° in the south
+and, a day later, 84°. One pass sees almost one plane only; these three see the body from both
+sides and from below. Above it, always turned away from the station, the hull stays too high."""
+
+FRAMES_PER_PASS = 20
+
+_MASK_RAD = float(np.deg2rad(10.0))
+
+
+def demo_tracks(waveform: Waveform) -> tuple[LineOfSightTrack, ...]:
+    """Return the demo's passes, one track each."""
+    satellite = satellite_from_elements(DEMO_ORBIT)
+    found = passes(
+        satellite,
+        DEMO_STATION,
+        start_utc=datetime(2016, 3, 11, 15, tzinfo=UTC),
+        duration_s=32 * 3600.0,
+        elevation_mask_rad=_MASK_RAD,
+    )
+    return tuple(
+        line_of_sight_track(
+            satellite,
+            DEMO_STATION,
+            start_utc=each.rise_utc,
+            duration_s=each.duration_s,
+            pulse_repetition_frequency_hz=waveform.pulse_repetition_frequency_hz,
+        )
+        for each in (found[index] for index in DEMO_PASSES)
+    )
+
+
+def demo_intervals(waveform: Waveform) -> list[tuple[int, LineOfSightTrack, CoherentInterval]]:
+    """Return the demo's coherent intervals as (pass number from 1, its track, interval).
+
+    Of each pass, `FRAMES_PER_PASS` intervals evenly spread over its turn.
+    """
+    chosen = []
+    for number, track in enumerate(demo_tracks(waveform), start=1):
+        intervals = divide(
+            track,
+            wavelength_m=waveform.wavelength_m,
+            cross_range_resolution_m=ImagingSettings().cross_range_resolution_m,
+        )
+        even = np.linspace(0, len(intervals) - 1, FRAMES_PER_PASS).round().astype(int)
+        chosen += [(number, track, intervals[index]) for index in even]
+    return chosen
+
+
+def demo_frames(*, seed: int = 1, scatterers: int = 40_000) -> Iterator[Frame]:
+    """Simulate the demo's echoes interval by interval and yield their images as they come.
+
+    Args:
+        seed: of the random generator.
+        scatterers: points on the target's surface.
+    """
+    random = np.random.default_rng(seed)
+    waveform = Waveform()
+    points = surface_scatterers(tiangong_like(), count=scatterers, random=random)
+    for number, track, interval in demo_intervals(waveform):
+        history = simulate_echoes(
+            points,
+            track.part(interval.start, interval.stop),
+            waveform,
+            signal_to_noise_db=20.0,
+            random=random,
+        )
+        pulses = interval.stop - interval.start
+        alone = CoherentInterval(
+            start=0,
+            stop=pulses,
+            middle=interval.middle - interval.start,
+            turn_rad=interval.turn_rad,
+        )
+        yield polar_format_frame(history, alone, ImagingSettings(), label=f"pass {number}")
