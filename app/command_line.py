@@ -1,6 +1,7 @@
 """The command `radarhull`."""
 
 import sys
+from collections.abc import Callable
 
 import tyro
 
@@ -13,7 +14,7 @@ from app.commands.simulate import simulate
 
 EXIT_BAD_INPUT = 2
 
-_COMMANDS = {
+_COMMANDS: dict[str, Callable[..., None]] = {
     "serve": serve,
     "simulate": simulate,
     "import": import_,

@@ -75,11 +75,9 @@ def reconstruct(
     grid = VoxelGrid.cube(side_m=settings.side_m, spacing_m=settings.spacing_m)
     volume = VoteVolume(grid)
     projections: list[Projection] = []
-    for number, frame in enumerate(frames, start=1):
-        silhouette = extract_silhouette(frame, settings.extraction)
-        if settings.registers_centroids:
-            shifted = centroid_registered(silhouette, frame.projection)
-            frame = replace(frame, projection=shifted)
+    for number, received in enumerate(frames, start=1):
+        silhouette = extract_silhouette(received, settings.extraction)
+        frame = _registered(received, silhouette) if settings.registers_centroids else received
         view = View(silhouette=silhouette, projection=frame.projection)
         volume.add(carving_view(view, settings.rule))
         projections.append(frame.projection)
@@ -94,3 +92,7 @@ def reconstruct(
             extents=() if surface.is_empty else axis_extents(surface, grid),
             unobserved=unobserved_direction(projections),
         )
+
+
+def _registered(frame: Frame, silhouette: Silhouette) -> Frame:
+    return replace(frame, projection=centroid_registered(silhouette, frame.projection))

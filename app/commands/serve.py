@@ -10,7 +10,7 @@ from app.server import serve as serve_source
 from app.source import Source
 from core.experiments.demo import DEMO_PASSES, FRAMES_PER_PASS, demo_frames
 from core.formats.pass_file import read_pass
-from core.radar.imaging import frames
+from core.radar.imaging import frame_count, frames
 from core.reconstruction import ReconstructionSettings
 
 
@@ -66,4 +66,8 @@ def pass_source(path: Path) -> Source:
         )
     history = recorded.history
     assert history is not None
-    return Source(name=path.name, frames=lambda: frames(history))
+    return Source(
+        name=path.name,
+        frames=lambda: frames(history),
+        expected_frames=frame_count(history),
+    )

@@ -1,11 +1,13 @@
 """`radarhull simulate`."""
 
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 import numpy as np
 import tyro
+from skyfield.api import EarthSatellite
 
 from app.commands.console import progress_bars
 from core.experiments.demo import DEMO_ORBIT, DEMO_STATION
@@ -25,6 +27,46 @@ from core.radar.scatterers import surface_scatterers
 from core.radar.targets import Target, tiangong_like
 from core.radar.waveform import Waveform
 
+Item = TypeVar("Item")
+
+SEARCH_DAYS = 2
+
+
+@dataclass(frozen=True)
+class Observation:
+    """Which pass of which orbit over which station."""
+
+    tle: Path | None = None
+    """File of two-line element sets; without one, Tiangong-1's orbit of March 2016."""
+    tle_index: int = 0
+    """Which set of the file, from 0."""
+    latitude_deg: float = DEMO_STATION.latitude_deg
+    """Of the station, degrees north."""
+    longitude_deg: float = DEMO_STATION.longitude_deg
+    """Of the station, degrees east."""
+    height_m: float = DEMO_STATION.height_m
+    """Of the station above the WGS 84 ellipsoid, metres."""
+    start: str = "2016-03-11T15:00:00"
+    """Look for passes in the two days from this UTC time on."""
+    pass_index: int = 0
+    """Which of those passes, from 0."""
+    mask_deg: float = 10.0
+    """Elevation mask, degrees."""
+
+
+@dataclass(frozen=True)
+class Radar:
+    """What the radar sends."""
+
+    carrier_hz: float = 16.7e9
+    """Centre frequency, hertz."""
+    bandwidth_hz: float = 1.0e9
+    """Bandwidth, hertz."""
+    prf_hz: float = 100.0
+    """Pulses per second."""
+    snr_db: float = 20.0
+    """Mean echo power over noise power, per pulse and frequency sample, decibels."""
+
 
 def simulate(
     out: Annotated[Path, tyro.conf.Positional],
@@ -32,18 +74,8 @@ def simulate(
     *,
     mesh: Path | None = None,
     mesh_unit_m: float = 1.0,
-    tle: Path | None = None,
-    tle_index: int = 0,
-    latitude_deg: float = DEMO_STATION.latitude_deg,
-    longitude_deg: float = DEMO_STATION.longitude_deg,
-    height_m: float = DEMO_STATION.height_m,
-    start: str = "2016-03-11T15:00:00",
-    pass_index: int = 0,
-    mask_deg: float = 10.0,
-    carrier_hz: float = 16.7e9,
-    bandwidth_hz: float = 1.0e9,
-    prf_hz: float = 100.0,
-    snr_db: float = 20.0,
+    observation: Annotated[Observation, tyro.conf.arg(name="")] = Observation(),
+    radar: Annotated[Radar, tyro.conf.arg(name="")] = Radar(),
     scatterers: int = 60_000,
     seed: int = 1,
 ) -> None:
@@ -53,76 +85,74 @@ def simulate(
         out: pass file to write (.h5).
         mesh: target as GLB, PLY, OBJ or STL; without one, a Tiangong-1-like laboratory.
         mesh_unit_m: metres per unit of the mesh file.
-        tle: file of two-line element sets; without one, Tiangong-1's orbit of March 2016.
-        tle_index: which set of the file, from 0.
-        latitude_deg: of the station, degrees north.
-        longitude_deg: of the station, degrees east.
-        height_m: of the station above the WGS 84 ellipsoid, metres.
-        start: look for passes in the two days from this UTC time on.
-        pass_index: which of those passes, from 0.
-        mask_deg: elevation mask, degrees.
-        carrier_hz: centre frequency, hertz.
-        bandwidth_hz: bandwidth, hertz.
-        prf_hz: pulses per second.
-        snr_db: signal-to-noise ratio per pulse and frequency sample, decibels.
+        observation: which pass of which orbit over which station.
+        radar: what the radar sends.
         scatterers: points on the target's surface.
         seed: of the random generator.
     """
     random = np.random.default_rng(seed)
-    waveform = Waveform(
-        carrier_frequency_hz=carrier_hz,
-        bandwidth_hz=bandwidth_hz,
-        pulse_repetition_frequency_hz=prf_hz,
-    )
     target = tiangong_like() if mesh is None else _mesh_target(mesh, mesh_unit_m)
-    station = Station(latitude_deg=latitude_deg, longitude_deg=longitude_deg, height_m=height_m)
-    track = _pass_track(tle, tle_index, station, start, pass_index, mask_deg, prf_hz)
+    waveform = Waveform(
+        carrier_frequency_hz=radar.carrier_hz,
+        bandwidth_hz=radar.bandwidth_hz,
+        pulse_repetition_frequency_hz=radar.prf_hz,
+    )
+    track = pass_track(observation, radar.prf_hz)
     points = surface_scatterers(target, count=scatterers, random=random)
     with progress_bars() as report:
         history = simulate_echoes(
             points,
             track,
             waveform,
-            signal_to_noise_db=snr_db,
+            signal_to_noise_db=radar.snr_db,
             random=random,
-            progress=lambda done, total: report("echoes", done, total),
+            progress=lambda done, total: report("pulses", done, total),
         )
     write_pass(out, RecordedPass(history=history))
-    print(f"{out}: {len(track)} pulses of {target.name} from {track.epoch_utc}.")
+    print(f"{out}: {len(track)} pulses of {target.name} from {track.epoch_utc} on.")
+
+
+def pass_track(observation: Observation, pulse_repetition_frequency_hz: float) -> LineOfSightTrack:
+    """Return the line of sight along the chosen pass.
+
+    Raises:
+        ValueError: no such element set, time or pass.
+    """
+    station = Station(
+        latitude_deg=observation.latitude_deg,
+        longitude_deg=observation.longitude_deg,
+        height_m=observation.height_m,
+    )
+    satellite = _satellite(observation)
+    found = passes(
+        satellite,
+        station,
+        start_utc=_utc(observation.start),
+        duration_s=SEARCH_DAYS * 86400.0,
+        elevation_mask_rad=float(np.deg2rad(observation.mask_deg)),
+    )
+    each = _chosen(
+        found, observation.pass_index, "pass", f"the {SEARCH_DAYS} days from {observation.start}"
+    )
+    return line_of_sight_track(
+        satellite,
+        station,
+        start_utc=each.rise_utc,
+        duration_s=each.duration_s,
+        pulse_repetition_frequency_hz=pulse_repetition_frequency_hz,
+    )
 
 
 def _mesh_target(path: Path, unit_m: float) -> Target:
     return Target(name=path.stem, parts=(read_mesh(path, unit_m=unit_m),))
 
 
-def _pass_track(
-    tle: Path | None,
-    tle_index: int,
-    station: Station,
-    start: str,
-    pass_index: int,
-    mask_deg: float,
-    prf_hz: float,
-) -> LineOfSightTrack:
-    satellite = (
-        satellite_from_elements(DEMO_ORBIT)
-        if tle is None
-        else satellite_from_tle(*_chosen(read_element_sets(tle), tle_index, "element set", str(tle)))
-    )
-    found = passes(
-        satellite,
-        station,
-        start_utc=_utc(start),
-        duration_s=2 * 86400.0,
-        elevation_mask_rad=float(np.deg2rad(mask_deg)),
-    )
-    each = _chosen(found, pass_index, "pass", f"the two days from {start}")
-    return line_of_sight_track(
-        satellite,
-        station,
-        start_utc=each.rise_utc,
-        duration_s=each.duration_s,
-        pulse_repetition_frequency_hz=prf_hz,
+def _satellite(observation: Observation) -> EarthSatellite:
+    if observation.tle is None:
+        return satellite_from_elements(DEMO_ORBIT)
+    sets = read_element_sets(observation.tle)
+    return satellite_from_tle(
+        *_chosen(sets, observation.tle_index, "element set", str(observation.tle))
     )
 
 

@@ -38,7 +38,7 @@ class VoxelGrid:
         if count > MAX_VOXELS:
             raise ValueError(
                 f"A grid of {self.shape} holds {count:,} voxels; its votes would need "
-                f"{count / 2**30:.1f} GiB; at most {MAX_VOXELS:,} are allowed. Use a larger spacing."
+                f"{count / 2**30:.1f} GiB; at most {MAX_VOXELS:,} fit. Use a larger spacing."
             )
 
     @classmethod
@@ -46,7 +46,7 @@ class VoxelGrid:
         """Return a grid centred on the origin of the target frame that spans `side_m` each way."""
         if not (np.isfinite(side_m) and side_m > 0 and np.isfinite(spacing_m) and spacing_m > 0):
             raise ValueError(
-                f"Grid side and voxel spacing must be positive metres, got {side_m} and {spacing_m}."
+                f"Grid side and spacing must be positive metres, got {side_m} and {spacing_m}."
             )
         count = max(2, round(side_m / spacing_m))
         origin = np.full(3, -0.5 * (count - 1) * spacing_m)
