@@ -15,23 +15,21 @@ DRACO_EXTENSION = b"KHR_draco_mesh_compression"
 """What a GLB file names where its meshes are compressed."""
 
 
-def read_mesh(path: Path, *, metres_per_unit: float = 1.0) -> trimesh.Trimesh:
+def read_mesh(path: Path, *, unit_m: float = 1.0) -> trimesh.Trimesh:
     """Read all meshes of a file as one, in metres, along the file's own axes.
 
     Equal vertices are merged. Materials, and other files that this one points to, are not read.
 
     Args:
         path: a file of one of MESH_SUFFIXES.
-        metres_per_unit: length of the file's unit; the formats do not say it reliably.
+        unit_m: length of the file's unit; the formats do not say it reliably.
 
     Raises:
         ValueError: another kind of file, one that cannot be read or holds no triangles, vertices
             that are NaN or infinite, faces without their vertices, or a unit that is no length.
     """
-    if not (np.isfinite(metres_per_unit) and metres_per_unit > 0):
-        raise ValueError(
-            f"The mesh's unit must be a positive length in metres, got {metres_per_unit}."
-        )
+    if not (np.isfinite(unit_m) and unit_m > 0):
+        raise ValueError(f"The mesh's unit must be a positive length in metres, got {unit_m}.")
     content = _content(path)
     vertices, faces = _joined(_loaded(path, content))
     if len(vertices) == 0 or len(faces) == 0:
@@ -47,7 +45,7 @@ def read_mesh(path: Path, *, metres_per_unit: float = 1.0) -> trimesh.Trimesh:
             f"{path.name} has faces with vertex numbers from {faces.min()} to {faces.max()} for "
             f"{len(vertices)} vertices; is it cut off?"
         )
-    return trimesh.Trimesh(vertices=vertices * metres_per_unit, faces=faces)
+    return trimesh.Trimesh(vertices=vertices * unit_m, faces=faces)
 
 
 def _content(path: Path) -> bytes:

@@ -15,7 +15,7 @@ def _box_file(folder, suffix):
 
 @pytest.mark.parametrize("suffix", [".glb", ".ply", ".obj", ".stl"])
 def test_every_format_comes_in_metres(tmp_path, suffix):
-    mesh = read_mesh(_box_file(tmp_path, suffix), metres_per_unit=0.5)
+    mesh = read_mesh(_box_file(tmp_path, suffix), unit_m=0.5)
     assert mesh.extents == pytest.approx([0.5, 1.0, 1.5])
     assert mesh.is_watertight
     assert mesh.volume == pytest.approx(0.75)
@@ -68,7 +68,7 @@ def test_faces_without_their_vertices_are_refused(tmp_path):
 @pytest.mark.parametrize("unit", [0.0, -1.0, float("nan"), float("inf")])
 def test_a_unit_that_is_no_length_is_refused(tmp_path, unit):
     with pytest.raises(ValueError, match="positive length in metres"):
-        read_mesh(_box_file(tmp_path, ".stl"), metres_per_unit=unit)
+        read_mesh(_box_file(tmp_path, ".stl"), unit_m=unit)
 
 
 def test_a_missing_file_is_named(tmp_path):
@@ -85,7 +85,7 @@ def test_a_missing_file_is_named(tmp_path):
     ],
 )
 def test_nasas_draco_meshes_come_in_metres(shared_data, name, unit_m, extents_m):
-    mesh = read_mesh(shared_data("models") / f"{name}.glb", metres_per_unit=unit_m)
+    mesh = read_mesh(shared_data("models") / f"{name}.glb", unit_m=unit_m)
     assert mesh.extents == pytest.approx(extents_m, abs=2e-3)
     assert np.isfinite(mesh.area)
 
