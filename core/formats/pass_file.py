@@ -12,7 +12,6 @@ Layout, schema version 1 (every dataset carries its unit in the attribute `unit`
 A pass file may come from anywhere, so it is read as untrusted: `core.formats.untrusted_hdf5`.
 """
 
-import os
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +19,7 @@ from typing import Any
 
 import h5py
 
+from core.formats.files import written_aside
 from core.formats.untrusted_hdf5 import opened, read_array, read_attribute
 from core.frame import Frame
 from core.geometry.projection import Projection
@@ -57,15 +57,8 @@ def write_pass(path: Path, recorded: RecordedPass) -> None:
     Raises:
         ValueError: the folder does not exist or cannot be written.
     """
-    aside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        with h5py.File(aside, "w", track_order=True) as file:
-            _write_content(file, recorded)
-        aside.replace(path)
-    except OSError as error:
-        raise ValueError(f"{path} could not be written: {error.strerror or error}.") from error
-    finally:
-        aside.unlink(missing_ok=True)
+    with written_aside(path) as aside, h5py.File(aside, "w", track_order=True) as file:
+        _write_content(file, recorded)
 
 
 def read_pass(path: Path) -> RecordedPass:

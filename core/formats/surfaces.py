@@ -1,10 +1,10 @@
 """Surfaces written for other programs."""
 
-import os
 from pathlib import Path
 
 import trimesh
 
+from core.formats.files import written_aside
 from core.hull.surface import Surface
 
 SUFFIXES = (".glb", ".ply", ".stl")
@@ -25,11 +25,5 @@ def write_surface(path: Path, surface: Surface) -> None:
         raise ValueError("The hull is empty; there is no surface to write.")
     mesh = trimesh.Trimesh(surface.vertices_m, surface.faces, process=False)
     content = mesh.export(file_type=suffix[1:])
-    aside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
+    with written_aside(path) as aside:
         aside.write_bytes(content)
-        aside.replace(path)
-    except OSError as error:
-        raise ValueError(f"{path} could not be written: {error.strerror}.") from error
-    finally:
-        aside.unlink(missing_ok=True)

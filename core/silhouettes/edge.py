@@ -83,9 +83,10 @@ def edge_displacement_cells(inner: Floats, detection: Detection) -> Floats:
     # Rayleigh amplitudes: mean power is 4/π of the squared mean amplitude.
     noise_power = 4 / np.pi * detection.background_mean**2
     skirt = max(detection.threshold**2 - noise_power, 0.0)
-    ratio = skirt / np.maximum(inner, np.finfo(float).tiny)
+    # No edge is crossed further inside than at half its power.
+    ratio = skirt / np.maximum(inner, max(2 * skirt, np.finfo(float).tiny))
     distance, spread = edge_spread()
-    displacement: Floats = np.interp(-np.clip(ratio, spread[-1], 0.5), -spread, distance)
+    displacement: Floats = np.interp(-np.maximum(ratio, spread[-1]), -spread, distance)
     return displacement
 
 

@@ -94,7 +94,7 @@ def test_doppler_is_the_finite_difference_of_range(demo_track):
 
 
 def test_the_satellite_flies_along_x_above_the_station(demo_track):
-    """Before culmination the station lies ahead (+x) and always below (+z): k points back and up."""
+    """At first the station lies ahead (+x) and always below (+z): k points back and up."""
     first, last = demo_track.line_of_sight[0], demo_track.line_of_sight[-1]
     assert first[0] < -0.8
     assert last[0] > 0.8

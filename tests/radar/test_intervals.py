@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -28,7 +30,7 @@ def test_every_interval_has_the_wanted_resolution(resolution_m, overlap):
     reached = [WAVELENGTH_M / (2 * interval.turn_rad) for interval in intervals]
     # The coarsest turn between two pulses is 1e-3 rad.
     assert reached == pytest.approx([resolution_m] * len(reached), rel=0.06)
-    assert all(a.start <= b.start for a, b in zip(intervals, intervals[1:], strict=False))
+    assert all(a.start <= b.start for a, b in pairwise(intervals))
     assert intervals[-1].stop == len(track)
     assert all(each.start <= each.middle < each.stop for each in intervals)
 
