@@ -86,7 +86,7 @@ def demo_intervals(waveform: Waveform) -> list[tuple[int, LineOfSightTrack, Cohe
     return chosen
 
 
-def demo_frames(*, seed: int = 1, scatterers: int = 40_000) -> Iterator[Frame]:
+def demo_frames(*, seed: int = 1, scatterers: int = 25_000) -> Iterator[Frame]:
     """Simulate the demo's echoes interval by interval and yield their images as they come.
 
     Args:
