@@ -191,11 +191,11 @@ def _row(
     rule: CarvingRule, agreement: Agreement, surface: Surface, target: Target
 ) -> tuple[str, ...]:
     lines = [
-        "none" if line is None else f"{line.length_m:.2f} ({_error_percent(line, feature):+.1f} %)"
+        "none" if line is None else f"{line.length_m:.2f}, {_error_percent(line, feature):+.1f} %"
         for feature, line in _measured(surface, target)
     ]
     return (
-        f"{rule} rule",
+        rule,
         f"{agreement.intersection_over_union:.3f}",
         f"{agreement.coverage:.3f}",
         *lines,
@@ -211,6 +211,6 @@ def _table(rows: list[tuple[str, ...]], target: Target) -> Table:
     truth = ("truth", "1.000", "1.000", *(f"{feature.length_m:.2f}" for feature in features))
     return Table(
         title="Hull from simulated echoes against the truth",
-        columns=("", "IoU", "coverage", *(f"{feature.name} (m)" for feature in features)),
+        columns=("rule", "IoU", "coverage", *(f"{feature.name} (m)" for feature in features)),
         rows=(*rows, truth),
     )
