@@ -104,6 +104,7 @@ def point_echoes(
         eps=TRANSFORM_PRECISION,
         upsampfac=1.25,
         isign=-1,
+        nthreads=1,  # several add in any order, and the last digits change from run to run
     )
     shape = (len(line_of_sight), len(frequency_hz))
     return np.asarray(echoes, dtype=np.complex64).reshape(shape)

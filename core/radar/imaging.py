@@ -116,6 +116,7 @@ def polar_format_frame(
         settings.shape,
         eps=1e-5,
         isign=1,
+        nthreads=1,  # as in the echoes: the same input gives the same image
     )
     return Frame(
         amplitude=np.abs(image) / np.float32(weights.sum()),
