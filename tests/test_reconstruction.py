@@ -1,3 +1,6 @@
+from dataclasses import replace
+from itertools import islice
+
 import numpy as np
 import pytest
 
@@ -45,3 +48,22 @@ def test_registration_by_centroid_puts_the_origin_there(frames):
     step = next(iter(reconstruct(frames, settings)))
     at = step.frame.projection.image_points(np.zeros(3))
     assert at == pytest.approx(centroid_px(step.silhouette))
+
+
+def test_a_frame_without_a_target_is_noted_and_does_not_vote(frames):
+    noise = np.random.default_rng(1).rayleigh(1.0, frames[0].shape)
+    blank = replace(frames[0], amplitude=noise)
+    before, noted, after = islice(reconstruct([frames[0], blank, frames[1]], SETTINGS), 3)
+    assert noted.note == "frame 2 shows no target and does not vote"
+    assert (noted.voting, noted.threshold) == (1, 1)
+    assert noted.surface.volume_m3() == before.surface.volume_m3()
+    assert (after.note, after.voting, after.number) == ("", 2, 3)
+
+
+def test_lines_are_measured_only_on_closed_hulls(frames):
+    assert next(iter(reconstruct(frames, SETTINGS))).lines == ()
+
+
+def test_a_negative_number_of_misses_is_refused():
+    with pytest.raises(ValueError, match="Tolerated misses are a number of views"):
+        ReconstructionSettings(tolerated_misses=-1)

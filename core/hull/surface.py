@@ -39,6 +39,9 @@ class Surface:
         return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
 
 
+EMPTY_SURFACE = Surface(vertices_m=np.empty((0, 3)), faces=np.empty((0, 3), dtype=np.int32))
+
+
 def hull_surface(volume: VoteVolume, threshold: int | None = None) -> Surface:
     """Return the surface of the voxels with at least `threshold` votes (default: all views').
 
@@ -60,7 +63,7 @@ def mask_surface(inside: NDArray[np.bool_], grid: VoxelGrid) -> Surface:
     Source: Lorensen and Cline, "Marching cubes", 1987, as in scikit-image.
     """
     if not inside.any():
-        return Surface(vertices_m=np.empty((0, 3)), faces=np.empty((0, 3), dtype=np.int32))
+        return EMPTY_SURFACE
     occupied = [
         np.flatnonzero(inside.any(axis=tuple(other for other in range(3) if other != axis)))
         for axis in range(3)
