@@ -5,10 +5,12 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from core.formats.files import written_aside
+from core.formats.files import checked_output, written_aside
 from core.frame import Frame
 
 DEPTH_DB = 60.0
+
+SUFFIXES = (".png",)
 
 
 def write_picture(path: Path, frame: Frame) -> None:
@@ -17,8 +19,7 @@ def write_picture(path: Path, frame: Frame) -> None:
     Raises:
         ValueError: another ending than .png, or a folder that cannot be written.
     """
-    if path.suffix.lower() != ".png":
-        raise ValueError(f'A picture is written as .png; got "{path.name}".')
+    checked_output(path, SUFFIXES)
     grey = (frame.decibels(floor_db=-DEPTH_DB) / DEPTH_DB + 1) * 255
     _, content = cv2.imencode(".png", np.round(grey).astype(np.uint8))
     with written_aside(path) as aside:
