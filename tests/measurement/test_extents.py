@@ -83,8 +83,9 @@ def test_an_open_hull_is_measured_only_where_no_grid_can_change_it():
     small, large = slanted_prism(12.0), slanted_prism(16.0)
     assert [extent.is_bounded for extent in small] == [True, False, False]
     assert [extent.is_bounded for extent in large] == [True, False, False]
-    assert small[0].value_m == large[0].value_m == pytest.approx(3.0, abs=0.25)
-    assert small[1].value_m != large[1].value_m
+    assert small[0].value_m == pytest.approx(large[0].value_m)
+    assert small[0].value_m == pytest.approx(3.0, abs=0.25)
+    assert small[1].value_m < large[1].value_m - 1
 
 
 def test_one_view_across_observes_what_the_others_do_not():
