@@ -83,11 +83,10 @@ export function showLines(body, lines) {
       const row = document.createElement("tr");
       const name = element("th", line.name);
       name.scope = "row";
+      name.append(element("small", vector(line.direction)));
       const length = element("td", fixed(line.length_m, 2));
       length.append(element("small", "\u202fm"));
-      const direction = element("td", vector(line.direction));
-      direction.className = "direction";
-      row.append(name, direction, length);
+      row.append(name, length);
       return row;
     }),
   );

@@ -108,7 +108,7 @@ def test_principal_lines_are_measured_once_every_extent_is_bounded(visit) -> Non
     page.get_by_role("button", name="Play").click()
     expect(page.locator("#hull-stamp")).to_have_text("after 6 frames")
     hull = page.request.get(f"{page.url}api/state").json()["hull"]
-    shown = [row.split() for row in page.locator("#lines").inner_text().splitlines()]
+    shown = [row.inner_text().split() for row in page.locator("#lines tr").all()]
     assert len(shown) == len(hull["lines"]) == 3
     for words, line in zip(shown, hull["lines"], strict=True):
         numbers = [*line["direction"], line["length_m"]]
@@ -117,6 +117,9 @@ def test_principal_lines_are_measured_once_every_extent_is_bounded(visit) -> Non
         assert [float(word) for word in written[1:5]] == pytest.approx(numbers, abs=0.006)
         assert written[5] == "m"
     expect(page.get_by_text("Measured once the views bound every extent.")).to_be_hidden()
+    panel = page.locator(".panel.hull")
+    assert panel.evaluate("(panel) => panel.scrollWidth <= panel.clientWidth")
+    assert panel.evaluate("(panel) => panel.scrollHeight <= panel.clientHeight")
 
 
 def test_a_frame_is_named_with_its_pass_and_its_angles_with_their_frame(visit) -> None:
