@@ -76,8 +76,16 @@ def _repaired(rings: tuple[Floats, ...]) -> Outline:
             "The outline encloses no area: its vertices coincide or lie on one line. "
             "Draw at least three vertices that are not on a line."
         )
-    # Rings that touch would overlap if each were moved outward alone.
-    grown = shapely.buffer(area, OUTSET_PX, join_style="mitre", mitre_limit=2.0)
+    # Needles without width hold no area, but who stands on one is on the outline. Rings that
+    # touch would overlap if each were moved outward alone.
+    needles = [part for part in shapely.get_parts(parts) if part.area == 0]
+    grown = shapely.buffer(
+        shapely.union_all([area, *needles]),
+        OUTSET_PX,
+        cap_style="square",
+        join_style="mitre",
+        mitre_limit=2.0,
+    )
     points, offsets = closed_rings(rings_of(grown))
     repair = _what_was_repaired(rings, area.area)
     return Outline(points=points, offsets=offsets, repair=repair)

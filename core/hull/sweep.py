@@ -26,6 +26,8 @@ def sweep_planes(
     flips: NDArray[np.uint8],
     offsets: NDArray[np.int64],
     weights: NDArray[Any],
+    limit: int,
+    flipped: NDArray[np.bool_],
 ) -> None:  # pragma: no cover - compiled
     """Add the polylines' votes to the planes first … last − 1 of `volume` (nx, ny, nz).
 
@@ -39,6 +41,8 @@ def sweep_planes(
         flips: see there.
         offsets: see there.
         weights: see there, of the volume's type.
+        limit: votes of the volume's type at which a voxel enters or leaves the hull; 0 for none.
+        flipped: (nx,) set where a voxel did.
     """
     lines, places = volume.shape[axis], volume.shape[2]
     # Along x one line's rows lie far apart in memory; neighbouring planes' rows lie together.
@@ -59,8 +63,12 @@ def sweep_planes(
         running[:] = 0
         for row in range(low, min(high + 1, lines)):
             for i in range(planes):
-                target = volume[start + i, row] if axis == 1 else volume[row, start + i]
-                _add_row(target, running[i], difference[i, row * places : (row + 1) * places])
+                x, y = (start + i, row) if axis == 1 else (row, start + i)
+                marks = difference[i, row * places : (row + 1) * places]
+                if limit == 0:
+                    _add_row(volume[x, y], running[i], marks)
+                elif _add_row_watching(volume[x, y], running[i], marks, limit):
+                    flipped[x] = True
         difference[:, lines * places :] = 0
 
 
@@ -73,6 +81,22 @@ def _add_row(
         running[place] = total
         target[place] += total
         difference[place] = 0
+
+
+@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+def _add_row_watching(
+    target: NDArray[Any], running: NDArray[Any], difference: NDArray[Any], limit: int
+) -> bool:  # pragma: no cover - compiled
+    """Add like `_add_row` and return whether a voxel's votes passed the limit, either way."""
+    some = False
+    for place in range(len(running)):
+        before = target[place] >= limit
+        total = running[place] + difference[place]
+        running[place] = total
+        target[place] += total
+        difference[place] = 0
+        some |= before != (target[place] >= limit)
+    return some
 
 
 @numba.njit(**Compiled)  # type: ignore[untyped-decorator]

@@ -3,7 +3,7 @@
 A vote is the paper's test (eqs. 20 to 24) on the outline itself, never on a rasterised mask.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from threading import RLock
 
@@ -20,7 +20,6 @@ from core.hull.threads import chunks, in_parallel
 from core.hull.view import View
 
 Votes = NDArray[np.uint8] | NDArray[np.uint16]
-Progress = Callable[[float], None]
 
 MOST_BYTE_VIEWS = 255
 MOST_VIEWS = 65535
@@ -79,6 +78,8 @@ class VoteVolume:
         self._voters: dict[int, Voter] = {}
         self._next_id = 0
         self._revision = 0
+        self._threshold: int | None = None
+        self._changed_at = np.zeros(grid.shape[0], dtype=np.int64)
         self._lock = RLock()
 
     @property
@@ -97,6 +98,23 @@ class VoteVolume:
     def revision(self) -> int:
         """A number that grows with every change."""
         return self._revision
+
+    @property
+    def threshold(self) -> int | None:
+        """Votes that a voxel of the hull has at least; None, at first, means all views'."""
+        return self._threshold
+
+    @threshold.setter
+    def threshold(self, threshold: int | None) -> None:
+        with self._lock:
+            self._threshold = None if threshold is None else self.checked_threshold(threshold)
+            self._revision += 1
+            self._changed_at[:] = self._revision
+
+    def planes_changed_since(self, revision: int) -> NDArray[np.bool_]:
+        """Return (nx,) in which planes x a voxel may have entered or left the hull since then."""
+        changed: NDArray[np.bool_] = self._changed_at > revision
+        return changed
 
     @property
     def voters(self) -> dict[int, Voter]:
@@ -119,13 +137,8 @@ class VoteVolume:
         """
         return self.add_many([view])[0]
 
-    def add_many(self, views: Iterable[View], progress: Progress | None = None) -> list[int]:
+    def add_many(self, views: Iterable[View]) -> list[int]:
         """Let views vote, all in one sweep, and return their numbers.
-
-        Args:
-            views: any number.
-            progress: called with the done part, 0 to 1; an exception from it cancels: nothing
-                has then been added.
 
         Raises:
             ValueError: an outline without area, or a camera that stands in the grid.
@@ -133,7 +146,9 @@ class VoteVolume:
         with self._lock:
             voters = [Voter.of(view, self.grid) for view in views]
             self._make_room(self.view_count + len(voters))
-            self._cast([voter.pulled_back(1) for voter in voters], _axes(voters), progress)
+            parts = [voter.pulled_back(1) for voter in voters]
+            self._cast(parts, [voter.axis for voter in voters])
+            self._changed_at[:] = self._revision
             numbers = list(range(self._next_id, self._next_id + len(voters)))
             self._voters.update(zip(numbers, voters, strict=True))
             self._next_id += len(voters)
@@ -176,17 +191,21 @@ class VoteVolume:
             new = replace(Voter.of(view, self.grid), votes=old.votes)
             if old.votes:
                 change = _change(old, new)
-                self._cast([part for part, _ in change], [axis for _, axis in change])
+                limit = self.checked_threshold(self.threshold)
+                parts, axes = [part for part, _ in change], [axis for _, axis in change]
+                flipped = self._cast(parts, axes, limit)
+                self._changed_at[flipped] = self._revision
             self._voters[number] = new
 
     def hull(self, threshold: int | None = None) -> NDArray[np.bool_]:
-        """Return the voxels with at least `threshold` votes (eq. 25), by default all views'.
+        """Return the voxels with at least `threshold` votes (eq. 25), by default the volume's.
 
         Raises:
             ValueError: no views yet, or a threshold outside 1 … number of views.
         """
         with self._lock:
-            inside: NDArray[np.bool_] = self._votes >= self.checked_threshold(threshold)
+            wanted = self.threshold if threshold is None else threshold
+            inside: NDArray[np.bool_] = self._votes >= self.checked_threshold(wanted)
             return inside
 
     def checked_threshold(self, threshold: int | None) -> int:
@@ -217,6 +236,7 @@ class VoteVolume:
             self._make_room(self.view_count + voting)
             self._cast([voter.pulled_back(1 if voting else -1)], [voter.axis])
             self._voters[number] = replace(voter, votes=voting)
+            self._changed_at[:] = self._revision
 
     def _make_room(self, views: int) -> None:
         """Widen the votes to 16 bits when 8 cannot hold as many."""
@@ -226,20 +246,24 @@ class VoteVolume:
             self._votes = self._votes.astype(np.uint16)
 
     def _cast(
-        self, parts: Sequence[PulledBack], axes: Sequence[int], progress: Progress | None = None
-    ) -> None:
-        """Add the votes of pulled-back polylines, those of each line axis in one sweep."""
+        self, parts: Sequence[PulledBack], axes: Sequence[int], limit: int = 0
+    ) -> NDArray[np.bool_]:
+        """Add the votes of pulled-back polylines, those of each line axis in one sweep.
+
+        Returns:
+            (nx,) in which planes x a voxel's votes passed `limit`, either way.
+        """
+        flipped = np.zeros(self.grid.shape[0], dtype=np.bool_)
         for axis in sorted(set(axes)):
             same = [part for part, of in zip(parts, axes, strict=True) if of == axis]
-            _sweep(self._votes, axis, joined(same))
+            _sweep(self._votes, axis, joined(same), limit, flipped)
         self._revision += 1
+        return flipped
 
 
-def _axes(voters: Iterable[Voter]) -> list[int]:
-    return [voter.axis for voter in voters]
-
-
-def _sweep(votes: Votes, axis: int, swept: PulledBack) -> None:
+def _sweep(
+    votes: Votes, axis: int, swept: PulledBack, limit: int, flipped: NDArray[np.bool_]
+) -> None:
     weights = swept.weights.astype(votes.dtype)
 
     def work(planes: tuple[int, int]) -> None:
@@ -252,6 +276,8 @@ def _sweep(votes: Votes, axis: int, swept: PulledBack) -> None:
             swept.flips,
             swept.offsets,
             weights,
+            votes.dtype.type(limit),
+            flipped,
         )
 
     in_parallel(work, chunks(votes.shape[1 - axis]))
