@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from core.arrays import Floats
 from core.hull.edge_cells import EdgeCells
 from core.hull.outline import Outline
-from core.hull.threads import Compiled
+from core.hull.threads import Compiled, Inlined
 
 MOST_EVENTS = 64
 """Outline crossings of one grid edge that are looked at; more would need a crossing per 1/64."""
@@ -29,18 +29,15 @@ class CrossingTables:
     Attributes:
         to_image: (views, 3, 4) from homogeneous voxel indices to the homogeneous image.
         points: (points, 2) of all outlines as (row, column).
-        origins: (views, 3) as in `EdgeCells`.
-        shapes: (views, 2) as in `EdgeCells`.
-        bases: (views, 3) where each view's points, starts and edges begin.
-        starts: of all views' cells.
-        edges: of all views' cells.
+        cell_maps: (15, views) 3 × 4 from homogeneous voxel indices to the row and column of a
+            cell, then the number of cell rows and columns, and the number of the first cell.
+        starts: (cells + 1,) where each cell's edges start in `edges`.
+        edges: which of `points` the edges near each cell start at.
     """
 
     to_image: Floats
     points: Floats
-    origins: Floats
-    shapes: NDArray[np.int64]
-    bases: NDArray[np.int64]
+    cell_maps: Floats
     starts: NDArray[np.int32]
     edges: NDArray[np.int32]
 
@@ -49,20 +46,30 @@ class CrossingTables:
         cls, maps: Sequence[Floats], outlines: Sequence[Outline], cells: Sequence[EdgeCells]
     ) -> "CrossingTables":
         """Return the tables of views, given each one's map to the image, outline and cells."""
-        sizes = [
-            (len(o.points), len(c.starts), len(c.edges))
-            for o, c in zip(outlines, cells, strict=True)
-        ]
-        ends = np.cumsum(np.array(sizes, dtype=np.int64), axis=0)
+        first_point = np.cumsum([0] + [len(outline.points) for outline in outlines])
+        first_edge = np.cumsum([0] + [len(cell.edges) for cell in cells])
+        first_cell = np.cumsum([0] + [len(cell.starts) - 1 for cell in cells])
+        starts = [c.starts[:-1] + first for c, first in zip(cells, first_edge[:-1], strict=True)]
+        edges = [c.edges + first for c, first in zip(cells, first_point[:-1], strict=True)]
         return cls(
             to_image=np.array(maps),
             points=np.concatenate([outline.points for outline in outlines]),
-            origins=np.array([cell.origin for cell in cells]),
-            shapes=np.array([cell.shape for cell in cells]),
-            bases=np.concatenate([np.zeros((1, 3), dtype=np.int64), ends[:-1]]),
-            starts=np.concatenate([cell.starts for cell in cells]),
-            edges=np.concatenate([cell.edges for cell in cells]),
+            cell_maps=_cell_maps(maps, cells, first_cell[:-1]),
+            starts=np.concatenate([*starts, [first_edge[-1]]]).astype(np.int32),
+            edges=np.concatenate(edges).astype(np.int32),
         )
+
+
+def _cell_maps(
+    maps: Sequence[Floats], cells: Sequence[EdgeCells], first_cell: NDArray[np.int64]
+) -> Floats:
+    """Return the cell maps (15, views) of maps to the image and of cells."""
+    columns = []
+    for to_image, cell, first in zip(maps, cells, first_cell, strict=True):
+        to_cell = to_image.copy()
+        to_cell[:2] = (to_image[:2] - cell.origin[:2, None] * to_image[2]) * cell.origin[2]
+        columns.append([*to_cell.ravel(), *cell.shape, first])
+    return np.ascontiguousarray(np.array(columns, dtype=np.float64).T)
 
 
 @numba.njit(**Compiled)  # type: ignore[untyped-decorator]
@@ -72,9 +79,7 @@ def cross_grid_edges(
     threshold: int,
     to_image: Floats,
     points: Floats,
-    origins: Floats,
-    shapes: NDArray[np.int64],
-    bases: NDArray[np.int64],
+    cell_maps: Floats,
     starts: NDArray[np.int32],
     edges: NDArray[np.int32],
 ) -> tuple[Floats, NDArray[np.int32]]:  # pragma: no cover - compiled
@@ -86,18 +91,17 @@ def cross_grid_edges(
         threshold: votes from which a voxel is inside.
         to_image: as in `CrossingTables`, like all that follow.
         points: see there.
-        origins: see there.
-        shapes: see there.
-        bases: see there.
+        cell_maps: see there.
         starts: see there.
         edges: see there.
 
     Returns:
         vertices: (edges, 3) in voxel indices.
-        causes: (edges, 2) view and point at which the outline edge starts; −1 at the grid's end.
+        causes: (edges, 2) view and point in `points` where the outline edge starts, −1 at the
+            grid's end.
     """
     vertices, causes = np.empty((len(crossed), 3)), np.full((len(crossed), 2), -1, dtype=np.int32)
-    order = np.arange(len(to_image))
+    near = np.empty(len(to_image), dtype=np.int32)
     inner, outer = np.empty(3), np.empty(3)
     event_at, event_step = np.empty(MOST_EVENTS), np.empty(MOST_EVENTS, dtype=np.int64)
     event_cause = np.empty((MOST_EVENTS, 2), dtype=np.int32)
@@ -105,17 +109,15 @@ def cross_grid_edges(
         inside, missing = _ends(crossed[i], votes, inner, outer)
         part = 0.5
         if missing >= 0:
+            _locate(cell_maps, inner, outer, near)
             strict = threshold == len(to_image)
             count = _collect(
                 inner,
                 outer,
                 missing if strict else -1,
-                order,
+                near,
                 to_image,
                 points,
-                origins,
-                shapes,
-                bases,
                 starts,
                 edges,
                 event_at,
@@ -147,7 +149,7 @@ def _ends(
     return inside, votes[int(outer[0]), int(outer[1]), int(outer[2])]
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**Inlined)  # type: ignore[untyped-decorator]
 def _first_below(
     count: int, inside: int, threshold: int, event_at: Floats, event_step: NDArray[np.int64]
 ) -> int:  # pragma: no cover - compiled
@@ -161,16 +163,33 @@ def _first_below(
 
 
 @numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+def _locate(
+    cell_maps: Floats, inner: Floats, outer: Floats, near: NDArray[np.int32]
+) -> None:  # pragma: no cover - compiled
+    """Write the cell in which each view sees the middle of a grid edge; beyond, the rim's."""
+    x, y, z = 0.5 * (inner[0] + outer[0]), 0.5 * (inner[1] + outer[1]), 0.5 * (inner[2] + outer[2])
+    # Rows taken out one by one are what the compiler turns into vectors.
+    row_x, row_y, row_z, row_1 = cell_maps[0], cell_maps[1], cell_maps[2], cell_maps[3]
+    column_x, column_y, column_z, column_1 = cell_maps[4], cell_maps[5], cell_maps[6], cell_maps[7]
+    depth_x, depth_y, depth_z, depth_1 = cell_maps[8], cell_maps[9], cell_maps[10], cell_maps[11]
+    rows, columns, first = cell_maps[12], cell_maps[13], cell_maps[14]
+    for view in range(len(near)):
+        scale = 1 / (depth_x[view] * x + depth_y[view] * y + depth_z[view] * z + depth_1[view])
+        row = row_x[view] * x + row_y[view] * y + row_z[view] * z + row_1[view]
+        column = column_x[view] * x + column_y[view] * y + column_z[view] * z + column_1[view]
+        row = np.floor(min(max(row * scale, 0.0), rows[view] - 1))
+        column = np.floor(min(max(column * scale, 0.0), columns[view] - 1))
+        near[view] = np.int32(first[view] + row * columns[view] + column)
+
+
+@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
 def _collect(
     inner: Floats,
     outer: Floats,
     votes_outside: int,
-    order: NDArray[np.int64],
+    near: NDArray[np.int32],
     to_image: Floats,
     points: Floats,
-    origins: Floats,
-    shapes: NDArray[np.int64],
-    bases: NDArray[np.int64],
     starts: NDArray[np.int32],
     edges: NDArray[np.int32],
     event_at: Floats,
@@ -180,33 +199,22 @@ def _collect(
     """Write where views are lost and won on the way out, sorted, and return how many.
 
     With `votes_outside` ≥ 0 all views vote inside, and only those count that miss the outer end:
-    as soon as all of them are found the search is over. Views found move to the front of `order`,
-    for the next grid edge is most often ended by the same ones; the result does not depend on it.
+    as soon as all of them are found the search is over.
     """
     count, found = 0, 0
-    views = len(order)
-    x, y, z = 0.5 * (inner[0] + outer[0]), 0.5 * (inner[1] + outer[1]), 0.5 * (inner[2] + outer[2])
-    for rank in range(views):
-        view = order[rank]
+    views = len(near)
+    for view in range(views):
+        first, last = starts[near[view]], starts[near[view] + 1]
+        if first == last:
+            continue
         before = count
-        row, column, depth = _project(to_image, view, x, y, z)
-        if depth != 1.0:
-            row, column = row / depth, column / depth
-        row = (row - origins[view, 0]) * origins[view, 2]
-        column = (column - origins[view, 1]) * origins[view, 2]
-        if row < 0 or column < 0 or row >= shapes[view, 0] or column >= shapes[view, 1]:
-            continue
-        cell = bases[view, 1] + int(row) * shapes[view, 1] + int(column)
-        if starts[cell] == starts[cell + 1]:
-            continue
         pr, pc, pw = _project(to_image, view, inner[0], inner[1], inner[2])
         qr, qc, qw = _project(to_image, view, outer[0], outer[1], outer[2])
         pr, pc, qr, qc = pr / pw, pc / pw, qr / qw, qc / qw
         net = 0
-        for k in range(starts[cell], starts[cell + 1]):
-            edge = edges[bases[view, 2] + k]
-            at = bases[view, 0] + edge
-            part, step = _cross_edge(points, at, pr, pc, pw, qr, qc, qw)
+        for k in range(first, last):
+            edge = edges[k]
+            part, step = _cross_edge(points, edge, pr, pc, pw, qr, qc, qw)
             if step != 0 and count < MOST_EVENTS:
                 _insert(event_at, event_step, event_cause, count, part, step, view, edge)
                 count += 1
@@ -217,14 +225,12 @@ def _collect(
             count = _without(event_at, event_step, event_cause, count, view)
             continue
         found += 1
-        order[rank] = order[found - 1]
-        order[found - 1] = view
         if found == views - votes_outside:
             break
     return count
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**Inlined)  # type: ignore[untyped-decorator]
 def _project(
     to_image: Floats, view: int, x: float, y: float, z: float
 ) -> tuple[float, float, float]:  # pragma: no cover - compiled
@@ -236,7 +242,7 @@ def _project(
     )
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**Inlined)  # type: ignore[untyped-decorator]
 def _applied(
     to_image: Floats, view: int, row: int, x: float, y: float, z: float
 ) -> float:  # pragma: no cover - compiled
@@ -244,7 +250,7 @@ def _applied(
     return near + to_image[view, row, 2] * z + to_image[view, row, 3]
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**Inlined)  # type: ignore[untyped-decorator]
 def _cross_edge(
     points: Floats, at: int, pr: float, pc: float, pw: float, qr: float, qc: float, qw: float
 ) -> tuple[float, int]:  # pragma: no cover - compiled
@@ -264,7 +270,7 @@ def _cross_edge(
     return from_p * pw / (from_p * pw - from_q * qw), -1 if from_p < 0 else 1
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**Inlined)  # type: ignore[untyped-decorator]
 def _insert(
     event_at: Floats,
     event_step: NDArray[np.int64],

@@ -36,10 +36,13 @@ class EdgeCells:
         points, reach = outline.points, longest_grid_edge_px(to_image, grid)
         if len(points) == 0:
             empty = np.zeros(2, dtype=np.int32)
-            return cls(origin=np.zeros(3), shape=np.zeros(2, np.int64), starts=empty, edges=empty)
-        low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
-        cell = max(reach, float((high - low).max()) / CELLS_ACROSS)
-        shape = np.floor((high - low) / cell).astype(np.int64) + 1
+            one = np.ones(2, dtype=np.int64)
+            return cls(origin=np.zeros(3), shape=one, starts=empty, edges=empty[:0])
+        extent = float(np.ptp(points, axis=0).max()) + 2 * reach
+        cell = max(reach, extent / CELLS_ACROSS)
+        # A rim of empty cells stands for everything beyond.
+        low = points.min(axis=0) - reach - cell
+        shape = np.floor((points.max(axis=0) + reach - low) / cell).astype(np.int64) + 2
         origin = np.array([low[0], low[1], 1 / cell])
         starts, edges = _sorted_into_cells(points, outline.offsets, origin, shape, reach)
         return cls(origin=origin, shape=shape, starts=starts, edges=edges)

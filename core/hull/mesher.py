@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from core.arrays import Floats
 from core.geometry.grid import VoxelGrid
 from core.hull.changes import changed_edges
+from core.hull.closed_mesh import Surface
 from core.hull.crossings import CrossingTables, cross_grid_edges
 from core.hull.cube_cases import edge_table, triangle_table
 from core.hull.edge_cells import EdgeCells, longest_grid_edge_px
 from core.hull.slab_mesh import mesh_slab
-from core.hull.surface import Surface
 from core.hull.threads import in_parallel
 from core.hull.votes import Voter, Votes, VoteVolume
 
@@ -114,6 +114,24 @@ class SurfaceMesher:
             self._slabs[number] = slab
 
 
+def meshed(volume: VoteVolume, threshold: int | None = None) -> Surface:
+    """Return the exact surface from scratch, by default at the volume's own threshold.
+
+    Raises:
+        ValueError: no views, or a threshold outside 1 … number of views.
+    """
+    with volume.reading():
+        limit = volume.checked_threshold(volume.threshold if threshold is None else threshold)
+        voters = voting(volume)
+        cells = in_parallel(lambda voter: cells_of(voter, volume.grid), voters.values())
+        tables = tables_of(voters, dict(zip(voters, cells, strict=True)))
+
+        def work(layers: tuple[int, int]) -> Slab:
+            return exact_slab(volume.votes, limit, layers, tables)
+
+        return joined_surface(in_parallel(work, slab_layers(volume.grid)), volume.grid)
+
+
 def slab_layers(grid: VoxelGrid) -> list[tuple[int, int]]:
     """Return the layers (first, past the last) of each slab; layer x lies past plane x."""
     starts = range(-1, grid.shape[0], SLAB_PLANES)
@@ -150,9 +168,7 @@ def exact_slab(
         threshold,
         tables.to_image,
         tables.points,
-        tables.origins,
-        tables.shapes,
-        tables.bases,
+        tables.cell_maps,
         tables.starts,
         tables.edges,
     )

@@ -79,13 +79,7 @@ def _repaired(rings: tuple[Floats, ...]) -> Outline:
     # Needles without width hold no area, but who stands on one is on the outline. Rings that
     # touch would overlap if each were moved outward alone.
     needles = [part for part in shapely.get_parts(parts) if part.area == 0]
-    grown = shapely.buffer(
-        shapely.union_all([area, *needles]),
-        OUTSET_PX,
-        cap_style="square",
-        join_style="mitre",
-        mitre_limit=2.0,
-    )
+    grown = shapely.buffer(shapely.union_all([area, *needles]), OUTSET_PX, quad_segs=2)
     points, offsets = closed_rings(rings_of(grown))
     repair = _what_was_repaired(rings, area.area)
     return Outline(points=points, offsets=offsets, repair=repair)

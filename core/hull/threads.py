@@ -13,6 +13,8 @@ from typing import TypeVar
 
 Compiled = {"cache": True, "nogil": True, "error_model": "numpy"}
 """How every kernel is compiled: kept on disk, free of the lock, dividing as NumPy does."""
+Inlined = {**Compiled, "inline": "always"}
+"""For what is called per voxel: passing an array to a function counts a reference, atomically."""
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")

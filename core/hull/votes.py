@@ -6,6 +6,7 @@ A vote is the paper's test (eqs. 20 to 24) on the outline itself, never on a ras
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from threading import RLock
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -248,21 +249,33 @@ class VoteVolume:
     def _cast(
         self, parts: Sequence[PulledBack], axes: Sequence[int], limit: int = 0
     ) -> NDArray[np.bool_]:
-        """Add the votes of pulled-back polylines, those of each line axis in one sweep.
-
-        Returns:
-            (nx,) in which planes x a voxel's votes passed `limit`, either way.
-        """
-        flipped = np.zeros(self.grid.shape[0], dtype=np.bool_)
-        for axis in sorted(set(axes)):
-            same = [part for part, of in zip(parts, axes, strict=True) if of == axis]
-            _sweep(self._votes, axis, joined(same), limit, flipped)
         self._revision += 1
-        return flipped
+        return cast(self._votes, parts, axes, limit)
+
+
+def cast(
+    votes: NDArray[Any], parts: Sequence[PulledBack], axes: Sequence[int], limit: int = 0
+) -> NDArray[np.bool_]:
+    """Add the votes of pulled-back polylines, those of each line axis in one sweep.
+
+    Args:
+        votes: (nx, ny, nz) of an unsigned type; changed in place.
+        parts: what to sweep.
+        axes: along which axis each.
+        limit: votes at which a voxel enters or leaves the hull; 0 when nobody wants to know.
+
+    Returns:
+        (nx,) in which planes x a voxel's votes passed the limit, either way.
+    """
+    flipped = np.zeros(votes.shape[0], dtype=np.bool_)
+    for axis in sorted(set(axes)):
+        swept = joined([part for part, of in zip(parts, axes, strict=True) if of == axis])
+        _sweep(votes, axis, swept, limit, flipped)
+    return flipped
 
 
 def _sweep(
-    votes: Votes, axis: int, swept: PulledBack, limit: int, flipped: NDArray[np.bool_]
+    votes: NDArray[Any], axis: int, swept: PulledBack, limit: int, flipped: NDArray[np.bool_]
 ) -> None:
     weights = swept.weights.astype(votes.dtype)
 
