@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from core.arrays import Floats
 from core.hull.edge_cells import EdgeCells
 from core.hull.outline import Outline
-from core.hull.threads import Compiled, Inlined
+from core.hull.threads import Compiled, InnerLoop
 
 MOST_EVENTS = 64
 """Outline crossings of one grid edge that are looked at; more would need a crossing per 1/64."""
@@ -101,10 +101,46 @@ def cross_grid_edges(
             grid's end.
     """
     vertices, causes = np.empty((len(crossed), 3)), np.full((len(crossed), 2), -1, dtype=np.int32)
-    near = np.empty(len(to_image), dtype=np.int32)
-    inner, outer = np.empty(3), np.empty(3)
-    event_at, event_step = np.empty(MOST_EVENTS), np.empty(MOST_EVENTS, dtype=np.int64)
-    event_cause = np.empty((MOST_EVENTS, 2), dtype=np.int32)
+    _cross_all(
+        crossed,
+        votes,
+        threshold,
+        to_image,
+        points,
+        cell_maps,
+        starts,
+        edges,
+        vertices,
+        causes,
+        np.empty(len(to_image), dtype=np.int32),
+        np.empty((2, 3)),
+        np.empty(MOST_EVENTS),
+        np.empty(MOST_EVENTS, dtype=np.int64),
+        np.empty((MOST_EVENTS, 2), dtype=np.int32),
+    )
+    return vertices, causes
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _cross_all(
+    crossed: NDArray[np.int32],
+    votes: NDArray[Any],
+    threshold: int,
+    to_image: Floats,
+    points: Floats,
+    cell_maps: Floats,
+    starts: NDArray[np.int32],
+    edges: NDArray[np.int32],
+    vertices: Floats,
+    causes: NDArray[np.int32],
+    near: NDArray[np.int32],
+    ends: Floats,
+    event_at: Floats,
+    event_step: NDArray[np.int64],
+    event_cause: NDArray[np.int32],
+) -> None:  # pragma: no cover - compiled
+    """Write vertices and causes; what comes after them is room to work in."""
+    inner, outer = ends[0], ends[1]
     for i in range(len(crossed)):
         inside, missing = _ends(crossed[i], votes, inner, outer)
         part = 0.5
@@ -127,13 +163,12 @@ def cross_grid_edges(
             chosen = _first_below(count, inside, threshold, event_at, event_step)
             if chosen >= 0:
                 part = min(max(event_at[chosen], 0.0), 1.0)
-                causes[i] = event_cause[chosen]
+                causes[i, 0], causes[i, 1] = event_cause[chosen, 0], event_cause[chosen, 1]
         for axis in range(3):
             vertices[i, axis] = inner[axis] + part * (outer[axis] - inner[axis])
-    return vertices, causes
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _ends(
     crossed: NDArray[np.int32], votes: NDArray[Any], inner: Floats, outer: Floats
 ) -> tuple[int, int]:  # pragma: no cover - compiled
@@ -149,7 +184,7 @@ def _ends(
     return inside, votes[int(outer[0]), int(outer[1]), int(outer[2])]
 
 
-@numba.njit(**Inlined)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _first_below(
     count: int, inside: int, threshold: int, event_at: Floats, event_step: NDArray[np.int64]
 ) -> int:  # pragma: no cover - compiled
@@ -162,7 +197,7 @@ def _first_below(
     return -1
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _locate(
     cell_maps: Floats, inner: Floats, outer: Floats, near: NDArray[np.int32]
 ) -> None:  # pragma: no cover - compiled
@@ -182,7 +217,7 @@ def _locate(
         near[view] = np.int32(first[view] + row * columns[view] + column)
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _collect(
     inner: Floats,
     outer: Floats,
@@ -230,7 +265,7 @@ def _collect(
     return count
 
 
-@numba.njit(**Inlined)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _project(
     to_image: Floats, view: int, x: float, y: float, z: float
 ) -> tuple[float, float, float]:  # pragma: no cover - compiled
@@ -242,15 +277,15 @@ def _project(
     )
 
 
-@numba.njit(**Inlined)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _applied(
     to_image: Floats, view: int, row: int, x: float, y: float, z: float
-) -> float:  # pragma: no cover - compiled
+) -> Any:  # pragma: no cover - compiled
     near = to_image[view, row, 0] * x + to_image[view, row, 1] * y
     return near + to_image[view, row, 2] * z + to_image[view, row, 3]
 
 
-@numba.njit(**Inlined)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _cross_edge(
     points: Floats, at: int, pr: float, pc: float, pw: float, qr: float, qc: float, qw: float
 ) -> tuple[float, int]:  # pragma: no cover - compiled
@@ -270,7 +305,7 @@ def _cross_edge(
     return from_p * pw / (from_p * pw - from_q * qw), -1 if from_p < 0 else 1
 
 
-@numba.njit(**Inlined)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _insert(
     event_at: Floats,
     event_step: NDArray[np.int64],
@@ -293,7 +328,7 @@ def _insert(
     event_cause[i, 0], event_cause[i, 1] = view, edge
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _without(
     event_at: Floats,
     event_step: NDArray[np.int64],
@@ -306,6 +341,23 @@ def _without(
     for i in range(count):
         if event_cause[i, 0] != view:
             event_at[left], event_step[left] = event_at[i], event_step[i]
-            event_cause[left] = event_cause[i]
+            event_cause[left, 0], event_cause[left, 1] = event_cause[i, 0], event_cause[i, 1]
             left += 1
     return left
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def any_within(
+    vertices: Floats, to_image: Floats, low: Floats, high: Floats
+) -> bool:  # pragma: no cover - compiled
+    """Return whether a vertex (…, 3), in voxel indices, is seen between two image corners."""
+    for i in range(len(vertices)):
+        x, y, z = vertices[i, 0], vertices[i, 1], vertices[i, 2]
+        depth = to_image[2, 0] * x + to_image[2, 1] * y + to_image[2, 2] * z + to_image[2, 3]
+        row = to_image[0, 0] * x + to_image[0, 1] * y + to_image[0, 2] * z + to_image[0, 3]
+        if not low[0] * depth <= row <= high[0] * depth:
+            continue
+        column = to_image[1, 0] * x + to_image[1, 1] * y + to_image[1, 2] * z + to_image[1, 3]
+        if low[1] * depth <= column <= high[1] * depth:
+            return True
+    return False

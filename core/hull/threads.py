@@ -13,8 +13,9 @@ from typing import TypeVar
 
 Compiled = {"cache": True, "nogil": True, "error_model": "numpy"}
 """How every kernel is compiled: kept on disk, free of the lock, dividing as NumPy does."""
-Inlined = {**Compiled, "inline": "always"}
-"""For what is called per voxel: passing an array to a function counts a reference, atomically."""
+InnerLoop = {**Compiled, "_nrt": False}
+"""For loops that allocate nothing: without it every slice and every array passed on counts
+references, atomically, and two threads that share an array wait for each other at each count."""
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
