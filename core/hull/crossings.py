@@ -29,7 +29,7 @@ class CrossingTables:
     Attributes:
         to_image: (views, 3, 4) from homogeneous voxel indices to the homogeneous image.
         points: (points, 2) of all outlines as (row, column).
-        cell_maps: (15, views) 3 × 4 from homogeneous voxel indices to the row and column of a
+        cell_maps: (views, 15) 3 × 4 from homogeneous voxel indices to the row and column of a
             cell, then the number of cell rows and columns, and the number of the first cell.
         starts: (cells + 1,) where each cell's edges start in `edges`.
         edges: which of `points` the edges near each cell start at.
@@ -63,13 +63,13 @@ class CrossingTables:
 def _cell_maps(
     maps: Sequence[Floats], cells: Sequence[EdgeCells], first_cell: NDArray[np.int64]
 ) -> Floats:
-    """Return the cell maps (15, views) of maps to the image and of cells."""
-    columns = []
+    """Return the cell maps (views, 15) of maps to the image and of cells."""
+    rows = []
     for to_image, cell, first in zip(maps, cells, first_cell, strict=True):
         to_cell = to_image.copy()
         to_cell[:2] = (to_image[:2] - cell.origin[:2, None] * to_image[2]) * cell.origin[2]
-        columns.append([*to_cell.ravel(), *cell.shape, first])
-    return np.ascontiguousarray(np.array(columns, dtype=np.float64).T)
+        rows.append([*to_cell.ravel(), *cell.shape, first])
+    return np.array(rows, dtype=np.float64)
 
 
 @numba.njit(**Compiled)  # type: ignore[untyped-decorator]
@@ -112,7 +112,7 @@ def cross_grid_edges(
         edges,
         vertices,
         causes,
-        np.empty(len(to_image), dtype=np.int32),
+        np.arange(len(to_image)),
         np.empty((2, 3)),
         np.empty(MOST_EVENTS),
         np.empty(MOST_EVENTS, dtype=np.int64),
@@ -133,7 +133,7 @@ def _cross_all(
     edges: NDArray[np.int32],
     vertices: Floats,
     causes: NDArray[np.int32],
-    near: NDArray[np.int32],
+    order: NDArray[np.int64],
     ends: Floats,
     event_at: Floats,
     event_step: NDArray[np.int64],
@@ -145,15 +145,15 @@ def _cross_all(
         inside, missing = _ends(crossed[i], votes, inner, outer)
         part = 0.5
         if missing >= 0:
-            _locate(cell_maps, inner, outer, near)
             strict = threshold == len(to_image)
             count = _collect(
                 inner,
                 outer,
                 missing if strict else -1,
-                near,
+                order,
                 to_image,
                 points,
+                cell_maps,
                 starts,
                 edges,
                 event_at,
@@ -198,23 +198,17 @@ def _first_below(
 
 
 @numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
-def _locate(
-    cell_maps: Floats, inner: Floats, outer: Floats, near: NDArray[np.int32]
-) -> None:  # pragma: no cover - compiled
-    """Write the cell in which each view sees the middle of a grid edge; beyond, the rim's."""
-    x, y, z = 0.5 * (inner[0] + outer[0]), 0.5 * (inner[1] + outer[1]), 0.5 * (inner[2] + outer[2])
-    # Rows taken out one by one are what the compiler turns into vectors.
-    row_x, row_y, row_z, row_1 = cell_maps[0], cell_maps[1], cell_maps[2], cell_maps[3]
-    column_x, column_y, column_z, column_1 = cell_maps[4], cell_maps[5], cell_maps[6], cell_maps[7]
-    depth_x, depth_y, depth_z, depth_1 = cell_maps[8], cell_maps[9], cell_maps[10], cell_maps[11]
-    rows, columns, first = cell_maps[12], cell_maps[13], cell_maps[14]
-    for view in range(len(near)):
-        scale = 1 / (depth_x[view] * x + depth_y[view] * y + depth_z[view] * z + depth_1[view])
-        row = row_x[view] * x + row_y[view] * y + row_z[view] * z + row_1[view]
-        column = column_x[view] * x + column_y[view] * y + column_z[view] * z + column_1[view]
-        row = np.floor(min(max(row * scale, 0.0), rows[view] - 1))
-        column = np.floor(min(max(column * scale, 0.0), columns[view] - 1))
-        near[view] = np.int32(first[view] + row * columns[view] + column)
+def _cell(
+    cell_maps: Floats, view: int, x: float, y: float, z: float
+) -> int:  # pragma: no cover - compiled
+    """Return the cell in which a view sees a point; a rim cell stands for all beyond."""
+    m = cell_maps
+    scale = 1 / (m[view, 8] * x + m[view, 9] * y + m[view, 10] * z + m[view, 11])
+    row = (m[view, 0] * x + m[view, 1] * y + m[view, 2] * z + m[view, 3]) * scale
+    column = (m[view, 4] * x + m[view, 5] * y + m[view, 6] * z + m[view, 7]) * scale
+    row = np.floor(min(max(row, 0.0), m[view, 12] - 1))
+    column = np.floor(min(max(column, 0.0), m[view, 13] - 1))
+    return int(m[view, 14] + row * m[view, 13] + column)
 
 
 @numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
@@ -222,9 +216,10 @@ def _collect(
     inner: Floats,
     outer: Floats,
     votes_outside: int,
-    near: NDArray[np.int32],
+    order: NDArray[np.int64],
     to_image: Floats,
     points: Floats,
+    cell_maps: Floats,
     starts: NDArray[np.int32],
     edges: NDArray[np.int32],
     event_at: Floats,
@@ -234,12 +229,16 @@ def _collect(
     """Write where views are lost and won on the way out, sorted, and return how many.
 
     With `votes_outside` ≥ 0 all views vote inside, and only those count that miss the outer end:
-    as soon as all of them are found the search is over.
+    as soon as all of them are found the search is over. They move to the front of `order`, for
+    the same views most often end the next grid edge too; what is found does not depend on it.
     """
     count, found = 0, 0
-    views = len(near)
-    for view in range(views):
-        first, last = starts[near[view]], starts[near[view] + 1]
+    views = len(order)
+    x, y, z = 0.5 * (inner[0] + outer[0]), 0.5 * (inner[1] + outer[1]), 0.5 * (inner[2] + outer[2])
+    for rank in range(views):
+        view = order[rank]
+        cell = _cell(cell_maps, view, x, y, z)
+        first, last = starts[cell], starts[cell + 1]
         if first == last:
             continue
         before = count
@@ -259,6 +258,9 @@ def _collect(
         if net >= 0:
             count = _without(event_at, event_step, event_cause, count, view)
             continue
+        for later in range(rank, 0, -1):
+            order[later] = order[later - 1]
+        order[0] = view
         found += 1
         if found == views - votes_outside:
             break

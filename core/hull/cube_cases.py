@@ -57,7 +57,7 @@ def loops(case: int) -> tuple[Loop, ...]:
         follows.update(_face_joins(case, face))
     found: list[Loop] = []
     while follows:
-        edge, follower = next(iter(follows.items()))
+        edge = next(iter(follows))
         loop = []
         while edge in follows:
             loop.append(edge)

@@ -9,6 +9,7 @@ import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from itertools import pairwise
 from typing import TypeVar
 
 Compiled = {"cache": True, "nogil": True, "error_model": "numpy"}
@@ -35,7 +36,7 @@ def chunks(count: int, *, per_thread: int = 4) -> list[tuple[int, int]]:
     """Return ranges (first, past the last) that together cover `count` items evenly."""
     parts = min(count, per_thread * thread_count())
     ends = [count * part // parts for part in range(parts + 1)]
-    return list(zip(ends[:-1], ends[1:], strict=True))
+    return list(pairwise(ends))
 
 
 @cache
