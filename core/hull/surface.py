@@ -1,54 +1,35 @@
 """The surface of a hull as a triangle mesh in true metres."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 from skimage.measure import marching_cubes
 
-from core.arrays import Floats, frozen
 from core.geometry.grid import VoxelGrid
+from core.hull.closed_mesh import Surface
+from core.hull.mesher import meshed
 from core.hull.votes import VoteVolume
 
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Surface:
-    """A closed triangle mesh.
-
-    Attributes:
-        vertices_m: (vertices, 3), target frame.
-        faces: (faces, 3) vertex indices, counter-clockwise as seen from outside.
-    """
-
-    vertices_m: Floats
-    faces: NDArray[np.int32]
-
-    def __post_init__(self) -> None:
-        vertices = frozen(self.vertices_m, np.float64, (None, 3), "Surface vertices")
-        object.__setattr__(self, "vertices_m", vertices)
-        object.__setattr__(self, "faces", frozen(self.faces, np.int32, (None, 3), "Surface faces"))
-
-    @property
-    def is_empty(self) -> bool:
-        """Whether there is no surface at all."""
-        return len(self.faces) == 0
-
-    def volume_m3(self) -> float:
-        """Return the enclosed volume in cubic metres."""
-        a, b, c = (self.vertices_m[self.faces[:, corner]] for corner in range(3))
-        return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
+__all__ = ["Surface", "hull_surface", "mask_surface"]
 
 
 EMPTY_SURFACE = Surface(vertices_m=np.empty((0, 3)), faces=np.empty((0, 3), dtype=np.int32))
 
 
 def hull_surface(volume: VoteVolume, threshold: int | None = None) -> Surface:
-    """Return the surface of the voxels with at least `threshold` votes (default: all views').
+    """Return the exact surface of the hull with at least `threshold` votes.
+
+    Between the voxels inside and outside it stands where the outlines put it; a hull that reaches
+    the grid's end is closed half a voxel outside. Where two of its sheets share a voxel an edge
+    may have four faces.
+
+    Args:
+        volume: the views and their votes.
+        threshold: votes that a voxel has at least; by default the volume's own.
 
     Raises:
         ValueError: no views, or a threshold outside 1 … number of views.
     """
-    return mask_surface(volume.hull(threshold), volume.grid)
+    return meshed(volume, threshold)
 
 
 def mask_surface(inside: NDArray[np.bool_], grid: VoxelGrid) -> Surface:

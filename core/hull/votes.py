@@ -1,192 +1,304 @@
 """The vote volume: how many views see each voxel inside or on their silhouette.
 
 A vote is the paper's test (eqs. 20 to 24) on the outline itself, never on a rasterised mask.
-For a plane of voxels the silhouette is pulled back into the plane's own index coordinates, where
-it is a polygon again; every directed edge then adds +1 or −1 at the first voxel past its crossing
-with each grid line, and one running sum along the line gives the votes.
 """
 
-import numba
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from threading import RLock
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from core.arrays import Floats
 from core.geometry.grid import VoxelGrid
+from core.hull.changes import changed_edges
+from core.hull.outline import Outline, outline_of
+from core.hull.pullback import PulledBack, index_to_image, joined, line_axis, pulled_back
+from core.hull.sweep import sweep_planes
+from core.hull.threads import chunks, in_parallel
 from core.hull.view import View
 
-Votes = NDArray[np.uint16]
+Votes = NDArray[np.uint8] | NDArray[np.uint16]
 
-ON_TOLERANCE_VOXELS = 1e-7
-"""A voxel centre this near to a crossing counts as on the outline, which is a vote (eq. 20)."""
+MOST_BYTE_VIEWS = 255
+MOST_VIEWS = 65535
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Voter:
+    """A view made ready to vote on one grid.
+
+    Attributes:
+        view: as it was given.
+        outline: of its silhouette, valid and outset.
+        to_image: 3 × 4 from homogeneous voxel indices to the homogeneous image.
+        axis: of the grid lines that it is swept along.
+        votes: whether its votes are in the volume; an excluded view keeps its place without.
+    """
+
+    view: View
+    outline: Outline
+    to_image: Floats
+    axis: int
+    votes: bool = True
+
+    @classmethod
+    def of(cls, view: View, grid: VoxelGrid) -> "Voter":
+        """Return the voter of a view.
+
+        Raises:
+            ValueError: an outline without area, or a camera that stands in the grid.
+        """
+        return cls(
+            view=view,
+            outline=outline_of(view.silhouette),
+            to_image=index_to_image(view.projection, grid),
+            axis=line_axis(view.projection),
+        )
+
+    def pulled_back(self, weight: int) -> PulledBack:
+        """Return the whole outline as the sweep needs it, a vote counting `weight`."""
+        weights = np.full(len(self.outline.offsets) - 1, weight, dtype=np.int64)
+        outline = self.outline
+        return pulled_back(outline.points, outline.offsets, weights, self.to_image, self.axis)
 
 
 class VoteVolume:
     """Votes of any number of views on one grid.
 
-    One writer at a time; `votes` may be read while no view is being added.
+    One thread writes at a time, any number may read: every method waits for a running change to
+    end. `votes` is the volume itself, to be read under `reading()` while others may write.
     """
 
     def __init__(self, grid: VoxelGrid) -> None:
         """Start with no views and no votes on `grid`."""
         self.grid = grid
-        self.view_count = 0
-        self._votes: Votes = np.zeros(grid.shape, dtype=np.uint16)
+        self._votes: Votes = np.zeros(grid.shape, dtype=np.uint8)
+        self._voters: dict[int, Voter] = {}
+        self._next_id = 0
+        self._revision = 0
+        self._threshold: int | None = None
+        self._changed_at = np.zeros(grid.shape[0], dtype=np.int64)
+        self._lock = RLock()
 
     @property
     def votes(self) -> Votes:
-        """(nx, ny, nz) uint16 votes per voxel, read-only."""
+        """(nx, ny, nz) votes per voxel, uint8 up to 255 views and uint16 past that, read-only."""
         view = self._votes.view()
         view.flags.writeable = False
         return view
 
-    def add(self, view: View) -> None:
-        """Let one more view vote.
+    @property
+    def view_count(self) -> int:
+        """How many views vote; excluded ones do not."""
+        return sum(voter.votes for voter in self._voters.values())
+
+    @property
+    def revision(self) -> int:
+        """A number that grows with every change."""
+        return self._revision
+
+    @property
+    def threshold(self) -> int | None:
+        """Votes that a voxel of the hull has at least; None, at first, means all views'."""
+        return self._threshold
+
+    @threshold.setter
+    def threshold(self, threshold: int | None) -> None:
+        with self._lock:
+            self._threshold = None if threshold is None else self.checked_threshold(threshold)
+            self._revision += 1
+            self._changed_at[:] = self._revision
+
+    def planes_changed_since(self, revision: int) -> NDArray[np.bool_]:
+        """Return (nx,) in which planes x a voxel may have entered or left the hull since then."""
+        changed: NDArray[np.bool_] = self._changed_at > revision
+        return changed
+
+    @property
+    def voters(self) -> dict[int, Voter]:
+        """The views by number, excluded ones included."""
+        return dict(self._voters)
+
+    def reading(self) -> RLock:
+        """Return the lock under which nothing changes: `with volume.reading(): ...`."""
+        return self._lock
+
+    def repair_note(self, number: int) -> str:
+        """Return what was repaired in a view's outline, empty when nothing was."""
+        return self._voter(number).outline.repair
+
+    def add(self, view: View) -> int:
+        """Let one more view vote and return its number.
 
         Raises:
-            ValueError: a perspective camera stands inside the grid's slab of planes.
+            ValueError: an outline without area, or a camera that stands in the grid.
         """
-        self._cast(view, 1)
-        self.view_count += 1
+        return self.add_many([view])[0]
 
-    def remove(self, view: View) -> None:
-        """Take back the votes of a view that was added before.
+    def add_many(self, views: Iterable[View]) -> list[int]:
+        """Let views vote, all in one sweep, and return their numbers.
 
         Raises:
-            ValueError: no view is left to remove.
+            ValueError: an outline without area, or a camera that stands in the grid.
         """
-        if self.view_count == 0:
-            raise ValueError("No view has been added, so none can be removed.")
-        self._cast(view, -1)
-        self.view_count -= 1
+        with self._lock:
+            voters = [Voter.of(view, self.grid) for view in views]
+            self._make_room(self.view_count + len(voters))
+            parts = [voter.pulled_back(1) for voter in voters]
+            self._cast(parts, [voter.axis for voter in voters])
+            self._changed_at[:] = self._revision
+            numbers = list(range(self._next_id, self._next_id + len(voters)))
+            self._voters.update(zip(numbers, voters, strict=True))
+            self._next_id += len(voters)
+            return numbers
+
+    def remove(self, number: int) -> None:
+        """Take a view and its votes out.
+
+        Raises:
+            ValueError: there is no such view.
+        """
+        with self._lock:
+            self.exclude(number)
+            del self._voters[number]
+
+    def exclude(self, number: int) -> None:
+        """Take a view's votes back but keep the view, to be included again.
+
+        Raises:
+            ValueError: there is no such view.
+        """
+        self._set_voting(number, voting=False)
+
+    def include(self, number: int) -> None:
+        """Let an excluded view vote again.
+
+        Raises:
+            ValueError: there is no such view.
+        """
+        self._set_voting(number, voting=True)
+
+    def replace(self, number: int, view: View) -> None:
+        """Put another view in a view's place; only the edges that differ are swept.
+
+        Raises:
+            ValueError: there is no such view, an outline without area, or a camera in the grid.
+        """
+        with self._lock:
+            old = self._voter(number)
+            new = replace(Voter.of(view, self.grid), votes=old.votes)
+            if old.votes:
+                change = _change(old, new)
+                limit = self.checked_threshold(self.threshold)
+                parts, axes = [part for part, _ in change], [axis for _, axis in change]
+                flipped = self._cast(parts, axes, limit)
+                self._changed_at[flipped] = self._revision
+            self._voters[number] = new
 
     def hull(self, threshold: int | None = None) -> NDArray[np.bool_]:
-        """Return the voxels with at least `threshold` votes (eq. 25), by default all views'.
+        """Return the voxels with at least `threshold` votes (eq. 25), by default the volume's.
 
         Raises:
             ValueError: no views yet, or a threshold outside 1 … number of views.
         """
-        inside: NDArray[np.bool_] = self._votes >= self.checked_threshold(threshold)
-        return inside
+        with self._lock:
+            wanted = self.threshold if threshold is None else threshold
+            inside: NDArray[np.bool_] = self._votes >= self.checked_threshold(wanted)
+            return inside
 
     def checked_threshold(self, threshold: int | None) -> int:
         """Return the threshold, or the number of views for None, after checking it."""
-        if self.view_count == 0:
+        count = self.view_count
+        if count == 0:
             raise ValueError("No views have voted yet; add at least two views of the target.")
         if threshold is None:
-            return self.view_count
-        if not 1 <= threshold <= self.view_count:
+            return count
+        if not 1 <= threshold <= count:
             raise ValueError(
                 f"The vote threshold must lie between 1 and the number of views, "
-                f"{self.view_count}; got {threshold}."
+                f"{count}; got {threshold}."
             )
         return threshold
 
-    def _cast(self, view: View, weight: int) -> None:
-        if view.silhouette.is_empty:
-            return
-        axis = _sweep_axis(view)
-        others = [other for other in range(3) if other != axis]
-        swept = np.moveaxis(self._votes, axis, 0)
-        starts, ends = _directed_edges(view.silhouette.rings)
-        to_image = _homogeneous(view.projection.matrix) @ self.grid.index_to_target()
-        pullbacks = np.empty((swept.shape[0], 3, 3))
-        for plane in range(swept.shape[0]):
-            columns = [to_image[:, others[0]], to_image[:, others[1]]]
-            offset = to_image[:, axis] * plane + to_image[:, 3]
-            pullbacks[plane] = np.linalg.inv(np.column_stack([*columns, offset]))
-        if not view.projection.is_affine:
-            _check_camera_outside(to_image, axis, swept.shape)
-        _sweep(swept, pullbacks, starts, ends, weight)
+    def _voter(self, number: int) -> Voter:
+        if number not in self._voters:
+            known = ", ".join(map(str, self._voters)) or "none"
+            raise ValueError(f"There is no view number {number} in this volume; it has {known}.")
+        return self._voters[number]
+
+    def _set_voting(self, number: int, *, voting: bool) -> None:
+        with self._lock:
+            voter = self._voter(number)
+            if voter.votes == voting:
+                return
+            self._make_room(self.view_count + voting)
+            self._cast([voter.pulled_back(1 if voting else -1)], [voter.axis])
+            self._voters[number] = replace(voter, votes=voting)
+            self._changed_at[:] = self._revision
+
+    def _make_room(self, views: int) -> None:
+        """Widen the votes to 16 bits when 8 cannot hold as many."""
+        if views > MOST_VIEWS:
+            raise ValueError(f"A vote volume holds at most {MOST_VIEWS:,} views; got {views:,}.")
+        if views > MOST_BYTE_VIEWS and self._votes.dtype == np.uint8:
+            self._votes = self._votes.astype(np.uint16)
+
+    def _cast(
+        self, parts: Sequence[PulledBack], axes: Sequence[int], limit: int = 0
+    ) -> NDArray[np.bool_]:
+        self._revision += 1
+        return cast(self._votes, parts, axes, limit)
 
 
-def _homogeneous(matrix: Floats) -> Floats:
-    return matrix if matrix.shape[0] == 3 else np.vstack([matrix, [0.0, 0.0, 0.0, 1.0]])
+def cast(
+    votes: NDArray[Any], parts: Sequence[PulledBack], axes: Sequence[int], limit: int = 0
+) -> NDArray[np.bool_]:
+    """Add the votes of pulled-back polylines, those of each line axis in one sweep.
+
+    Args:
+        votes: (nx, ny, nz) of an unsigned type; changed in place.
+        parts: what to sweep.
+        axes: along which axis each.
+        limit: votes at which a voxel enters or leaves the hull; 0 when nobody wants to know.
+
+    Returns:
+        (nx,) in which planes x a voxel's votes passed the limit, either way.
+    """
+    flipped = np.zeros(votes.shape[0], dtype=np.bool_)
+    for axis in sorted(set(axes)):
+        swept = joined([part for part, of in zip(parts, axes, strict=True) if of == axis])
+        _sweep(votes, axis, swept, limit, flipped)
+    return flipped
 
 
-def _sweep_axis(view: View) -> int:
-    """Return the grid axis nearest the viewing direction, whose planes the view maps best."""
-    return int(np.argmax(np.abs(view.projection.viewing_direction())))
+def _sweep(
+    votes: NDArray[Any], axis: int, swept: PulledBack, limit: int, flipped: NDArray[np.bool_]
+) -> None:
+    weights = swept.weights.astype(votes.dtype)
 
-
-def _check_camera_outside(to_image: Floats, axis: int, shape: tuple[int, ...]) -> None:
-    corners = np.array(np.meshgrid(*[(0, count - 1) for count in shape])).reshape(3, -1)
-    index = np.empty_like(corners)
-    index[[axis, *[other for other in range(3) if other != axis]]] = corners
-    depth = to_image[2, :3] @ index + to_image[2, 3]
-    if float(depth.min()) <= 0 < float(depth.max()) or float(depth.max()) <= 0:
-        raise ValueError(
-            "The camera of a perspective view must have the whole grid in front of it; "
-            "make the grid smaller or check the camera matrix's sign."
+    def work(planes: tuple[int, int]) -> None:
+        sweep_planes(
+            votes,
+            axis,
+            *planes,
+            swept.place,
+            swept.crossing,
+            swept.flips,
+            swept.offsets,
+            weights,
+            votes.dtype.type(limit),
+            flipped,
         )
 
-
-def _directed_edges(rings: tuple[Floats, ...]) -> tuple[Floats, Floats]:
-    starts = np.concatenate(rings)
-    ends = np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
-    return starts, ends
+    in_parallel(work, chunks(votes.shape[1 - axis]))
 
 
-@numba.njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
-def _sweep(
-    swept: Votes, pullbacks: Floats, starts: Floats, ends: Floats, weight: int
-) -> None:  # pragma: no cover - compiled
-    """Add one view's votes, plane by plane, into `swept` (planes, lines, places)."""
-    planes, lines, places = swept.shape
-    crossings = np.zeros((lines, places + 1), dtype=np.int16)
-    tail = np.empty_like(starts)
-    head = np.empty_like(ends)
-    for plane in range(planes):
-        _pull_back(pullbacks[plane], starts, tail)
-        _pull_back(pullbacks[plane], ends, head)
-        first = max(0, int(np.ceil(max(tail[:, 0].min(), -1.0))))
-        last = min(lines - 1, int(np.floor(min(tail[:, 0].max(), lines + 0.0))))
-        if first > last:
-            continue
-        _mark_crossings(tail, head, first, last, crossings)
-        for y in range(first, last + 1):
-            inside = 0
-            for z in range(places):
-                inside += crossings[y, z]
-                crossings[y, z] = 0
-                if inside > 0:
-                    swept[plane, y, z] += weight
-            crossings[y, places] = 0
-
-
-@numba.njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
-def _pull_back(matrix: Floats, image: Floats, plane: Floats) -> None:  # pragma: no cover - compiled
-    """Map image points (n, 2) by a 3 × 3 homography into a plane's index coordinates (n, 2)."""
-    for i in range(image.shape[0]):
-        row, column = image[i]
-        depth = matrix[2, 0] * row + matrix[2, 1] * column + matrix[2, 2]
-        plane[i, 0] = (matrix[0, 0] * row + matrix[0, 1] * column + matrix[0, 2]) / depth
-        plane[i, 1] = (matrix[1, 0] * row + matrix[1, 1] * column + matrix[1, 2]) / depth
-
-
-@numba.njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
-def _mark_crossings(
-    tail: Floats, head: Floats, first: int, last: int, crossings: NDArray[np.int16]
-) -> None:  # pragma: no cover - compiled
-    """Mark +1 where a line enters the polygon and −1 past where it leaves it.
-
-    A mirrored pull-back swaps entering and leaving edges, so the sign of the polygon's area
-    decides which is which. Edges are half-open along the lines' axis: a shared vertex counts once.
-    """
-    places = crossings.shape[1] - 1
-    area = 0.0
-    for e in range(tail.shape[0]):
-        area += tail[e, 0] * head[e, 1] - head[e, 0] * tail[e, 1]
-    for e in range(tail.shape[0]):
-        a, b = tail[e, 0], head[e, 0]
-        if a == b:
-            continue
-        start = max(first, int(np.ceil(max(min(a, b), first - 1.0))))
-        stop = min(last, int(np.ceil(min(max(a, b), last + 1.0))) - 1)
-        slope = (head[e, 1] - tail[e, 1]) / (b - a)
-        enters = (b > a) == (area > 0)
-        for y in range(start, stop + 1):
-            place = min(max(tail[e, 1] + (y - a) * slope, -1.0), places + 0.0)
-            if enters:
-                crossings[y, max(int(np.ceil(place - ON_TOLERANCE_VOXELS)), 0)] += 1
-            else:
-                crossings[y, min(int(np.floor(place + ON_TOLERANCE_VOXELS)) + 1, places)] -= 1
+def _change(old: Voter, new: Voter) -> list[tuple[PulledBack, int]]:
+    """Return what to sweep, and along which axis, so that `new` votes in the place of `old`."""
+    if np.array_equal(old.to_image, new.to_image):
+        points, offsets, weights = changed_edges(old.outline, new.outline)
+        return [(pulled_back(points, offsets, weights, new.to_image, new.axis), new.axis)]
+    return [(old.pulled_back(-1), old.axis), (new.pulled_back(1), new.axis)]

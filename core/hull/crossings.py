@@ -1,0 +1,365 @@
+"""Where exactly a hull's boundary crosses a grid edge.
+
+A grid edge from inside to outside loses its votes where its image crosses the outlines of the
+views that miss its outer end. The first place at which fewer votes than the threshold are left
+is the hull's boundary.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from core.arrays import Floats
+from core.hull.edge_cells import EdgeCells
+from core.hull.outline import Outline
+from core.hull.threads import Compiled, InnerLoop
+
+MOST_EVENTS = 64
+"""Outline crossings of one grid edge that are looked at; more would need a crossing per 1/64."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class CrossingTables:
+    """Outlines of all views, one after another, as the search for crossings needs them.
+
+    Attributes:
+        to_image: (views, 3, 4) from homogeneous voxel indices to the homogeneous image.
+        points: (points, 2) of all outlines as (row, column).
+        cell_maps: (views, 15) 3 × 4 from homogeneous voxel indices to the row and column of a
+            cell, then the number of cell rows and columns, and the number of the first cell.
+        starts: (cells + 1,) where each cell's edges start in `edges`.
+        edges: which of `points` the edges near each cell start at.
+    """
+
+    to_image: Floats
+    points: Floats
+    cell_maps: Floats
+    starts: NDArray[np.int32]
+    edges: NDArray[np.int32]
+
+    @classmethod
+    def of(
+        cls, maps: Sequence[Floats], outlines: Sequence[Outline], cells: Sequence[EdgeCells]
+    ) -> "CrossingTables":
+        """Return the tables of views, given each one's map to the image, outline and cells."""
+        first_point = np.cumsum([0] + [len(outline.points) for outline in outlines])
+        first_edge = np.cumsum([0] + [len(cell.edges) for cell in cells])
+        first_cell = np.cumsum([0] + [len(cell.starts) - 1 for cell in cells])
+        starts = [c.starts[:-1] + first for c, first in zip(cells, first_edge[:-1], strict=True)]
+        edges = [c.edges + first for c, first in zip(cells, first_point[:-1], strict=True)]
+        return cls(
+            to_image=np.array(maps),
+            points=np.concatenate([outline.points for outline in outlines]),
+            cell_maps=_cell_maps(maps, cells, first_cell[:-1]),
+            starts=np.concatenate([*starts, [first_edge[-1]]]).astype(np.int32),
+            edges=np.concatenate(edges).astype(np.int32),
+        )
+
+
+def _cell_maps(
+    maps: Sequence[Floats], cells: Sequence[EdgeCells], first_cell: NDArray[np.int64]
+) -> Floats:
+    """Return the cell maps (views, 15) of maps to the image and of cells."""
+    rows = []
+    for to_image, cell, first in zip(maps, cells, first_cell, strict=True):
+        to_cell = to_image.copy()
+        to_cell[:2] = (to_image[:2] - cell.origin[:2, None] * to_image[2]) * cell.origin[2]
+        rows.append([*to_cell.ravel(), *cell.shape, first])
+    return np.array(rows, dtype=np.float64)
+
+
+@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+def cross_grid_edges(
+    crossed: NDArray[np.int32],
+    votes: NDArray[Any],
+    threshold: int,
+    to_image: Floats,
+    points: Floats,
+    cell_maps: Floats,
+    starts: NDArray[np.int32],
+    edges: NDArray[np.int32],
+) -> tuple[Floats, NDArray[np.int32]]:  # pragma: no cover - compiled
+    """Return where each crossed grid edge leaves the hull, and the outline edge that ends it there.
+
+    Args:
+        crossed: (edges, 4) as `mesh_slab` returns them.
+        votes: (nx, ny, nz).
+        threshold: votes from which a voxel is inside.
+        to_image: as in `CrossingTables`, like all that follow.
+        points: see there.
+        cell_maps: see there.
+        starts: see there.
+        edges: see there.
+
+    Returns:
+        vertices: (edges, 3) in voxel indices.
+        causes: (edges, 2) view and point in `points` where the outline edge starts, −1 at the
+            grid's end.
+    """
+    vertices, causes = np.empty((len(crossed), 3)), np.full((len(crossed), 2), -1, dtype=np.int32)
+    _cross_all(
+        crossed,
+        votes,
+        threshold,
+        to_image,
+        points,
+        cell_maps,
+        starts,
+        edges,
+        vertices,
+        causes,
+        np.arange(len(to_image)),
+        np.empty((2, 3)),
+        np.empty(MOST_EVENTS),
+        np.empty(MOST_EVENTS, dtype=np.int64),
+        np.empty((MOST_EVENTS, 2), dtype=np.int32),
+    )
+    return vertices, causes
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _cross_all(
+    crossed: NDArray[np.int32],
+    votes: NDArray[Any],
+    threshold: int,
+    to_image: Floats,
+    points: Floats,
+    cell_maps: Floats,
+    starts: NDArray[np.int32],
+    edges: NDArray[np.int32],
+    vertices: Floats,
+    causes: NDArray[np.int32],
+    order: NDArray[np.int64],
+    ends: Floats,
+    event_at: Floats,
+    event_step: NDArray[np.int64],
+    event_cause: NDArray[np.int32],
+) -> None:  # pragma: no cover - compiled
+    """Write vertices and causes; what comes after them is room to work in."""
+    inner, outer = ends[0], ends[1]
+    for i in range(len(crossed)):
+        inside, missing = _ends(crossed[i], votes, inner, outer)
+        part = 0.5
+        if missing >= 0:
+            strict = threshold == len(to_image)
+            count = _collect(
+                inner,
+                outer,
+                missing if strict else -1,
+                order,
+                to_image,
+                points,
+                cell_maps,
+                starts,
+                edges,
+                event_at,
+                event_step,
+                event_cause,
+            )
+            chosen = _first_below(count, inside, threshold, event_at, event_step)
+            if chosen >= 0:
+                part = min(max(event_at[chosen], 0.0), 1.0)
+                causes[i, 0], causes[i, 1] = event_cause[chosen, 0], event_cause[chosen, 1]
+        for axis in range(3):
+            vertices[i, axis] = inner[axis] + part * (outer[axis] - inner[axis])
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _ends(
+    crossed: NDArray[np.int32], votes: NDArray[Any], inner: Floats, outer: Floats
+) -> tuple[int, int]:  # pragma: no cover - compiled
+    """Write a grid edge's ends, the inside one first; return their votes, −1 outside the grid."""
+    axis, lower_inside = crossed[3] & 3, crossed[3] >> 2
+    for i in range(3):
+        lower, upper = crossed[i], crossed[i] + (i == axis)
+        inner[i], outer[i] = (lower, upper) if lower_inside else (upper, lower)
+    inside = votes[int(inner[0]), int(inner[1]), int(inner[2])]
+    for i in range(3):
+        if outer[i] < 0 or outer[i] >= votes.shape[i]:
+            return inside, -1
+    return inside, votes[int(outer[0]), int(outer[1]), int(outer[2])]
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _first_below(
+    count: int, inside: int, threshold: int, event_at: Floats, event_step: NDArray[np.int64]
+) -> int:  # pragma: no cover - compiled
+    """Return which of the sorted events first leaves fewer votes than the threshold, or −1."""
+    left = inside
+    for event in range(count):
+        left += event_step[event]
+        if left < threshold:
+            return event
+    return -1
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _cell(
+    cell_maps: Floats, view: int, x: float, y: float, z: float
+) -> int:  # pragma: no cover - compiled
+    """Return the cell in which a view sees a point; a rim cell stands for all beyond."""
+    m = cell_maps
+    scale = 1 / (m[view, 8] * x + m[view, 9] * y + m[view, 10] * z + m[view, 11])
+    row = (m[view, 0] * x + m[view, 1] * y + m[view, 2] * z + m[view, 3]) * scale
+    column = (m[view, 4] * x + m[view, 5] * y + m[view, 6] * z + m[view, 7]) * scale
+    row = np.floor(min(max(row, 0.0), m[view, 12] - 1))
+    column = np.floor(min(max(column, 0.0), m[view, 13] - 1))
+    return int(m[view, 14] + row * m[view, 13] + column)
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _collect(
+    inner: Floats,
+    outer: Floats,
+    votes_outside: int,
+    order: NDArray[np.int64],
+    to_image: Floats,
+    points: Floats,
+    cell_maps: Floats,
+    starts: NDArray[np.int32],
+    edges: NDArray[np.int32],
+    event_at: Floats,
+    event_step: NDArray[np.int64],
+    event_cause: NDArray[np.int32],
+) -> int:  # pragma: no cover - compiled
+    """Write where views are lost and won on the way out, sorted, and return how many.
+
+    With `votes_outside` ≥ 0 all views vote inside, and only those count that miss the outer end:
+    as soon as all of them are found the search is over. They move to the front of `order`, for
+    the same views most often end the next grid edge too; what is found does not depend on it.
+    """
+    count, found = 0, 0
+    views = len(order)
+    x, y, z = 0.5 * (inner[0] + outer[0]), 0.5 * (inner[1] + outer[1]), 0.5 * (inner[2] + outer[2])
+    for rank in range(views):
+        view = order[rank]
+        cell = _cell(cell_maps, view, x, y, z)
+        first, last = starts[cell], starts[cell + 1]
+        if first == last:
+            continue
+        before = count
+        pr, pc, pw = _project(to_image, view, inner[0], inner[1], inner[2])
+        qr, qc, qw = _project(to_image, view, outer[0], outer[1], outer[2])
+        pr, pc, qr, qc = pr / pw, pc / pw, qr / qw, qc / qw
+        net = 0
+        for k in range(first, last):
+            edge = edges[k]
+            part, step = _cross_edge(points, edge, pr, pc, pw, qr, qc, qw)
+            if step != 0 and count < MOST_EVENTS:
+                _insert(event_at, event_step, event_cause, count, part, step, view, edge)
+                count += 1
+                net += step
+        if votes_outside < 0 or count == before:
+            continue
+        if net >= 0:
+            count = _without(event_at, event_step, event_cause, count, view)
+            continue
+        for later in range(rank, 0, -1):
+            order[later] = order[later - 1]
+        order[0] = view
+        found += 1
+        if found == views - votes_outside:
+            break
+    return count
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _project(
+    to_image: Floats, view: int, x: float, y: float, z: float
+) -> tuple[float, float, float]:  # pragma: no cover - compiled
+    """Return a voxel index's homogeneous image."""
+    return (
+        _applied(to_image, view, 0, x, y, z),
+        _applied(to_image, view, 1, x, y, z),
+        _applied(to_image, view, 2, x, y, z),
+    )
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _applied(
+    to_image: Floats, view: int, row: int, x: float, y: float, z: float
+) -> Any:  # pragma: no cover - compiled
+    near = to_image[view, row, 0] * x + to_image[view, row, 1] * y
+    return near + to_image[view, row, 2] * z + to_image[view, row, 3]
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _cross_edge(
+    points: Floats, at: int, pr: float, pc: float, pw: float, qr: float, qc: float, qw: float
+) -> tuple[float, int]:  # pragma: no cover - compiled
+    """Return how far on the way from p to q an edge is crossed, and −1 out, +1 in, 0 not."""
+    ar, ac, br, bc = points[at, 0], points[at, 1], points[at + 1, 0], points[at + 1, 1]
+    dr, dc = qr - pr, qc - pc
+    tail = dr * (ac - pc) - dc * (ar - pr) >= 0
+    head = dr * (bc - pc) - dc * (br - pr) >= 0
+    if tail == head:
+        return 0.0, 0
+    er, ec = br - ar, bc - ac
+    from_p = er * (pc - ac) - ec * (pr - ar)
+    from_q = er * (qc - ac) - ec * (qr - ar)
+    if (from_p >= 0) == (from_q >= 0):
+        return 0.0, 0
+    # Depths make the image's ratio that in space.
+    return from_p * pw / (from_p * pw - from_q * qw), -1 if from_p < 0 else 1
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _insert(
+    event_at: Floats,
+    event_step: NDArray[np.int64],
+    event_cause: NDArray[np.int32],
+    count: int,
+    part: float,
+    step: int,
+    view: int,
+    edge: int,
+) -> None:  # pragma: no cover - compiled
+    """Insert an event among `count` sorted ones."""
+    i = count
+    while i > 0 and (
+        event_at[i - 1] > part or (event_at[i - 1] == part and event_cause[i - 1, 0] > view)
+    ):
+        event_at[i], event_step[i] = event_at[i - 1], event_step[i - 1]
+        event_cause[i, 0], event_cause[i, 1] = event_cause[i - 1, 0], event_cause[i - 1, 1]
+        i -= 1
+    event_at[i], event_step[i] = part, step
+    event_cause[i, 0], event_cause[i, 1] = view, edge
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _without(
+    event_at: Floats,
+    event_step: NDArray[np.int64],
+    event_cause: NDArray[np.int32],
+    count: int,
+    view: int,
+) -> int:  # pragma: no cover - compiled
+    """Drop one view's events and return how many are left."""
+    left = 0
+    for i in range(count):
+        if event_cause[i, 0] != view:
+            event_at[left], event_step[left] = event_at[i], event_step[i]
+            event_cause[left, 0], event_cause[left, 1] = event_cause[i, 0], event_cause[i, 1]
+            left += 1
+    return left
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def any_within(
+    vertices: Floats, to_image: Floats, low: Floats, high: Floats
+) -> bool:  # pragma: no cover - compiled
+    """Return whether a vertex (…, 3), in voxel indices, is seen between two image corners."""
+    for i in range(len(vertices)):
+        x, y, z = vertices[i, 0], vertices[i, 1], vertices[i, 2]
+        depth = to_image[2, 0] * x + to_image[2, 1] * y + to_image[2, 2] * z + to_image[2, 3]
+        row = to_image[0, 0] * x + to_image[0, 1] * y + to_image[0, 2] * z + to_image[0, 3]
+        if not low[0] * depth <= row <= high[0] * depth:
+            continue
+        column = to_image[1, 0] * x + to_image[1, 1] * y + to_image[1, 2] * z + to_image[1, 3]
+        if low[1] * depth <= column <= high[1] * depth:
+            return True
+    return False
