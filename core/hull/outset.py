@@ -4,6 +4,7 @@ Only the search for edges that meet is compiled: it is the one part whose work g
 the outline, and every compiled line costs time at the very first start.
 """
 
+import itertools
 from typing import Any
 
 import numba
@@ -26,7 +27,7 @@ def prepared(points: Floats, offsets: Indices) -> bool:
         points: (points, 2) of closed rings after one another, first points repeated.
         offsets: (rings + 1,) where each starts.
     """
-    rings = [points[a:b] for a, b in zip(offsets[:-1], offsets[1:], strict=True)]
+    rings = [points[a:b] for a, b in itertools.pairwise(offsets)]
     if any(_is_too_short(ring) for ring in rings) or _edges_meet(points, offsets):
         return False
     for ring in rings:
@@ -127,10 +128,7 @@ def outset(points: Floats, offsets: Indices, distance: float) -> tuple[Floats, I
     Returns:
         The same form: points and offsets.
     """
-    moved = [
-        _outset_ring(points[a : b - 1], distance)
-        for a, b in zip(offsets[:-1], offsets[1:], strict=True)
-    ]
+    moved = [_outset_ring(points[a : b - 1], distance) for a, b in itertools.pairwise(offsets)]
     starts = np.zeros_like(offsets)
     starts[1:] = np.cumsum([len(ring) for ring in moved])
     return np.concatenate(moved), starts
