@@ -6,10 +6,13 @@ from typing import Annotated
 
 import tyro
 
-from app.commands.options import DEFAULT_CARVING, CarvingOptions
+from app.commands.options import Carving, CarvingOptions
 from app.server import DEFAULT_PORT
 from app.server import serve as serve_source
 from app.sources import demo_source, pass_sources
+
+WORKSTATION_CARVING = Carving(spacing_m=0.2)
+"""Coarser than the other commands: the hull is meshed anew with every frame that arrives."""
 
 
 def serve(
@@ -22,7 +25,7 @@ def serve(
     *,
     port: int = DEFAULT_PORT,
     open: bool = False,  # noqa: A002 - the flag's name on the command line
-    carving: CarvingOptions = DEFAULT_CARVING,
+    carving: CarvingOptions = WORKSTATION_CARVING,
 ) -> None:
     """Serve the workstation on one page of this machine.
 
