@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import tyro
 
+from app.commands.bench import bench
 from app.commands.experiment import experiment
 from app.commands.image import image
 from app.commands.import_ import import_
@@ -21,6 +22,7 @@ _COMMANDS: dict[str, Callable[..., None]] = {
     "image": image,
     "reconstruct": reconstruct,
     "experiment": experiment,
+    "bench": bench,
 }
 
 _DESCRIPTION = """Visual hulls, lengths and attitude of satellites from multi-view radar images.

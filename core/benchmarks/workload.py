@@ -50,9 +50,7 @@ class Task:
             views=chosen,
             grid=grid,
             masks=np.array([view.silhouette.mask() for view in chosen], dtype=np.uint8),
-            to_image=np.array(
-                [view.projection.matrix @ grid.index_to_target() for view in chosen]
-            ),
+            to_image=np.array([view.projection.matrix @ grid.index_to_target() for view in chosen]),
         )
 
     @property
@@ -65,9 +63,7 @@ class Task:
         return np.arange(self.grid.shape[0])
 
 
-def satellite_task(
-    size: int, views: int, *, seed: int = 1, segments: int = 64
-) -> Task:
+def satellite_task(size: int, views: int, *, seed: int = 1, segments: int = 64) -> Task:
     """Return the test body under random views on a cubic grid of `size` voxels a side."""
     return Task.of(satellite_views(views, seed=seed, segments=segments), cubic_grid(size))
 

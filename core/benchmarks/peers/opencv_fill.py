@@ -25,7 +25,7 @@ def votes(task: Task, _planes: NDArray[np.int64]) -> NDArray[Any]:
     for axis in sorted(set(axes)):
         chosen = [number for number, of in enumerate(axes) if of == axis]
         outlines = [
-            _pulled_back(task.views[number].silhouette.rings, task.to_image[number], axis)
+            pulled_back(task.views[number].silhouette.rings, task.to_image[number], axis)
             for number in chosen
         ]
         _fill(np.moveaxis(counted, axis, 0), outlines)
@@ -38,7 +38,7 @@ def slice_axis(to_image: Floats) -> int:
     return int(np.argmax(np.abs(across)))
 
 
-def _pulled_back(
+def pulled_back(
     rings: tuple[Floats, ...], to_image: Floats, axis: int
 ) -> tuple[list[Floats], Floats]:
     """Return rings at slice 0 as OpenCV's (x, y), and how far they move from slice to slice."""
@@ -51,9 +51,7 @@ def _fill(volume: NDArray[Any], outlines: list[tuple[list[Floats], Floats]]) -> 
     def work(number: int) -> None:
         filled = np.zeros(volume.shape[1:], dtype=np.uint8)
         for rings, step in outlines:
-            moved = [
-                np.rint((ring + step * number) * 2**SHIFT).astype(np.int32) for ring in rings
-            ]
+            moved = [np.rint((ring + step * number) * 2**SHIFT).astype(np.int32) for ring in rings]
             filled[:] = 0
             cv2.fillPoly(filled, moved, 1, shift=SHIFT)
             volume[number] += filled
