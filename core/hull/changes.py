@@ -16,12 +16,19 @@ def changed_edges(
     of `old` into those of `new`.
     """
     before, after = _directed_edges(old), _directed_edges(new)
-    gone, came = ~np.isin(before, after), ~np.isin(after, before)
+    gone = _not_among(before, after)
+    came = _not_among(after, before)
     edges = np.concatenate([before[gone], after[came]]).view(np.float64).reshape(-1, 2)
     count = len(edges) // 2
     weights = np.ones(count, dtype=np.int64)
     weights[: np.count_nonzero(gone)] = -1
     return edges, np.arange(count + 1, dtype=np.int64) * 2, weights
+
+
+def _not_among(edges: NDArray[np.void], others: NDArray[np.void]) -> NDArray[np.bool_]:
+    """Return which edges are not among others; equal ones have equal bytes."""
+    known = set(others.tolist())
+    return np.array([edge not in known for edge in edges.tolist()], dtype=np.bool_)
 
 
 def _directed_edges(outline: Outline) -> NDArray[np.void]:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from core.arrays import Floats
 from core.hull.edge_cells import EdgeCells
 from core.hull.outline import Outline
-from core.hull.threads import Compiled, Inlined
+from core.hull.threads import Compiled, InnerLoop
 
 MOST_EVENTS = 64
 """Outline crossings of one grid edge that are looked at; more would need a crossing per 1/64."""
@@ -29,7 +29,7 @@ class CrossingTables:
     Attributes:
         to_image: (views, 3, 4) from homogeneous voxel indices to the homogeneous image.
         points: (points, 2) of all outlines as (row, column).
-        cell_maps: (15, views) 3 × 4 from homogeneous voxel indices to the row and column of a
+        cell_maps: (views, 15) 3 × 4 from homogeneous voxel indices to the row and column of a
             cell, then the number of cell rows and columns, and the number of the first cell.
         starts: (cells + 1,) where each cell's edges start in `edges`.
         edges: which of `points` the edges near each cell start at.
@@ -63,13 +63,13 @@ class CrossingTables:
 def _cell_maps(
     maps: Sequence[Floats], cells: Sequence[EdgeCells], first_cell: NDArray[np.int64]
 ) -> Floats:
-    """Return the cell maps (15, views) of maps to the image and of cells."""
-    columns = []
+    """Return the cell maps (views, 15) of maps to the image and of cells."""
+    rows = []
     for to_image, cell, first in zip(maps, cells, first_cell, strict=True):
         to_cell = to_image.copy()
         to_cell[:2] = (to_image[:2] - cell.origin[:2, None] * to_image[2]) * cell.origin[2]
-        columns.append([*to_cell.ravel(), *cell.shape, first])
-    return np.ascontiguousarray(np.array(columns, dtype=np.float64).T)
+        rows.append([*to_cell.ravel(), *cell.shape, first])
+    return np.array(rows, dtype=np.float64)
 
 
 @numba.njit(**Compiled)  # type: ignore[untyped-decorator]
@@ -101,23 +101,59 @@ def cross_grid_edges(
             grid's end.
     """
     vertices, causes = np.empty((len(crossed), 3)), np.full((len(crossed), 2), -1, dtype=np.int32)
-    near = np.empty(len(to_image), dtype=np.int32)
-    inner, outer = np.empty(3), np.empty(3)
-    event_at, event_step = np.empty(MOST_EVENTS), np.empty(MOST_EVENTS, dtype=np.int64)
-    event_cause = np.empty((MOST_EVENTS, 2), dtype=np.int32)
+    _cross_all(
+        crossed,
+        votes,
+        threshold,
+        to_image,
+        points,
+        cell_maps,
+        starts,
+        edges,
+        vertices,
+        causes,
+        np.arange(len(to_image)),
+        np.empty((2, 3)),
+        np.empty(MOST_EVENTS),
+        np.empty(MOST_EVENTS, dtype=np.int64),
+        np.empty((MOST_EVENTS, 2), dtype=np.int32),
+    )
+    return vertices, causes
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _cross_all(
+    crossed: NDArray[np.int32],
+    votes: NDArray[Any],
+    threshold: int,
+    to_image: Floats,
+    points: Floats,
+    cell_maps: Floats,
+    starts: NDArray[np.int32],
+    edges: NDArray[np.int32],
+    vertices: Floats,
+    causes: NDArray[np.int32],
+    order: NDArray[np.int64],
+    ends: Floats,
+    event_at: Floats,
+    event_step: NDArray[np.int64],
+    event_cause: NDArray[np.int32],
+) -> None:  # pragma: no cover - compiled
+    """Write vertices and causes; what comes after them is room to work in."""
+    inner, outer = ends[0], ends[1]
     for i in range(len(crossed)):
         inside, missing = _ends(crossed[i], votes, inner, outer)
         part = 0.5
         if missing >= 0:
-            _locate(cell_maps, inner, outer, near)
             strict = threshold == len(to_image)
             count = _collect(
                 inner,
                 outer,
                 missing if strict else -1,
-                near,
+                order,
                 to_image,
                 points,
+                cell_maps,
                 starts,
                 edges,
                 event_at,
@@ -127,13 +163,12 @@ def cross_grid_edges(
             chosen = _first_below(count, inside, threshold, event_at, event_step)
             if chosen >= 0:
                 part = min(max(event_at[chosen], 0.0), 1.0)
-                causes[i] = event_cause[chosen]
+                causes[i, 0], causes[i, 1] = event_cause[chosen, 0], event_cause[chosen, 1]
         for axis in range(3):
             vertices[i, axis] = inner[axis] + part * (outer[axis] - inner[axis])
-    return vertices, causes
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _ends(
     crossed: NDArray[np.int32], votes: NDArray[Any], inner: Floats, outer: Floats
 ) -> tuple[int, int]:  # pragma: no cover - compiled
@@ -149,7 +184,7 @@ def _ends(
     return inside, votes[int(outer[0]), int(outer[1]), int(outer[2])]
 
 
-@numba.njit(**Inlined)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _first_below(
     count: int, inside: int, threshold: int, event_at: Floats, event_step: NDArray[np.int64]
 ) -> int:  # pragma: no cover - compiled
@@ -162,34 +197,29 @@ def _first_below(
     return -1
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
-def _locate(
-    cell_maps: Floats, inner: Floats, outer: Floats, near: NDArray[np.int32]
-) -> None:  # pragma: no cover - compiled
-    """Write the cell in which each view sees the middle of a grid edge; beyond, the rim's."""
-    x, y, z = 0.5 * (inner[0] + outer[0]), 0.5 * (inner[1] + outer[1]), 0.5 * (inner[2] + outer[2])
-    # Rows taken out one by one are what the compiler turns into vectors.
-    row_x, row_y, row_z, row_1 = cell_maps[0], cell_maps[1], cell_maps[2], cell_maps[3]
-    column_x, column_y, column_z, column_1 = cell_maps[4], cell_maps[5], cell_maps[6], cell_maps[7]
-    depth_x, depth_y, depth_z, depth_1 = cell_maps[8], cell_maps[9], cell_maps[10], cell_maps[11]
-    rows, columns, first = cell_maps[12], cell_maps[13], cell_maps[14]
-    for view in range(len(near)):
-        scale = 1 / (depth_x[view] * x + depth_y[view] * y + depth_z[view] * z + depth_1[view])
-        row = row_x[view] * x + row_y[view] * y + row_z[view] * z + row_1[view]
-        column = column_x[view] * x + column_y[view] * y + column_z[view] * z + column_1[view]
-        row = np.floor(min(max(row * scale, 0.0), rows[view] - 1))
-        column = np.floor(min(max(column * scale, 0.0), columns[view] - 1))
-        near[view] = np.int32(first[view] + row * columns[view] + column)
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _cell(
+    cell_maps: Floats, view: int, x: float, y: float, z: float
+) -> int:  # pragma: no cover - compiled
+    """Return the cell in which a view sees a point; a rim cell stands for all beyond."""
+    m = cell_maps
+    scale = 1 / (m[view, 8] * x + m[view, 9] * y + m[view, 10] * z + m[view, 11])
+    row = (m[view, 0] * x + m[view, 1] * y + m[view, 2] * z + m[view, 3]) * scale
+    column = (m[view, 4] * x + m[view, 5] * y + m[view, 6] * z + m[view, 7]) * scale
+    row = np.floor(min(max(row, 0.0), m[view, 12] - 1))
+    column = np.floor(min(max(column, 0.0), m[view, 13] - 1))
+    return int(m[view, 14] + row * m[view, 13] + column)
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _collect(
     inner: Floats,
     outer: Floats,
     votes_outside: int,
-    near: NDArray[np.int32],
+    order: NDArray[np.int64],
     to_image: Floats,
     points: Floats,
+    cell_maps: Floats,
     starts: NDArray[np.int32],
     edges: NDArray[np.int32],
     event_at: Floats,
@@ -199,12 +229,16 @@ def _collect(
     """Write where views are lost and won on the way out, sorted, and return how many.
 
     With `votes_outside` ≥ 0 all views vote inside, and only those count that miss the outer end:
-    as soon as all of them are found the search is over.
+    as soon as all of them are found the search is over. They move to the front of `order`, for
+    the same views most often end the next grid edge too; what is found does not depend on it.
     """
     count, found = 0, 0
-    views = len(near)
-    for view in range(views):
-        first, last = starts[near[view]], starts[near[view] + 1]
+    views = len(order)
+    x, y, z = 0.5 * (inner[0] + outer[0]), 0.5 * (inner[1] + outer[1]), 0.5 * (inner[2] + outer[2])
+    for rank in range(views):
+        view = order[rank]
+        cell = _cell(cell_maps, view, x, y, z)
+        first, last = starts[cell], starts[cell + 1]
         if first == last:
             continue
         before = count
@@ -224,13 +258,16 @@ def _collect(
         if net >= 0:
             count = _without(event_at, event_step, event_cause, count, view)
             continue
+        for later in range(rank, 0, -1):
+            order[later] = order[later - 1]
+        order[0] = view
         found += 1
         if found == views - votes_outside:
             break
     return count
 
 
-@numba.njit(**Inlined)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _project(
     to_image: Floats, view: int, x: float, y: float, z: float
 ) -> tuple[float, float, float]:  # pragma: no cover - compiled
@@ -242,15 +279,15 @@ def _project(
     )
 
 
-@numba.njit(**Inlined)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _applied(
     to_image: Floats, view: int, row: int, x: float, y: float, z: float
-) -> float:  # pragma: no cover - compiled
+) -> Any:  # pragma: no cover - compiled
     near = to_image[view, row, 0] * x + to_image[view, row, 1] * y
     return near + to_image[view, row, 2] * z + to_image[view, row, 3]
 
 
-@numba.njit(**Inlined)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _cross_edge(
     points: Floats, at: int, pr: float, pc: float, pw: float, qr: float, qc: float, qw: float
 ) -> tuple[float, int]:  # pragma: no cover - compiled
@@ -270,7 +307,7 @@ def _cross_edge(
     return from_p * pw / (from_p * pw - from_q * qw), -1 if from_p < 0 else 1
 
 
-@numba.njit(**Inlined)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _insert(
     event_at: Floats,
     event_step: NDArray[np.int64],
@@ -293,7 +330,7 @@ def _insert(
     event_cause[i, 0], event_cause[i, 1] = view, edge
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _without(
     event_at: Floats,
     event_step: NDArray[np.int64],
@@ -306,6 +343,23 @@ def _without(
     for i in range(count):
         if event_cause[i, 0] != view:
             event_at[left], event_step[left] = event_at[i], event_step[i]
-            event_cause[left] = event_cause[i]
+            event_cause[left, 0], event_cause[left, 1] = event_cause[i, 0], event_cause[i, 1]
             left += 1
     return left
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def any_within(
+    vertices: Floats, to_image: Floats, low: Floats, high: Floats
+) -> bool:  # pragma: no cover - compiled
+    """Return whether a vertex (…, 3), in voxel indices, is seen between two image corners."""
+    for i in range(len(vertices)):
+        x, y, z = vertices[i, 0], vertices[i, 1], vertices[i, 2]
+        depth = to_image[2, 0] * x + to_image[2, 1] * y + to_image[2, 2] * z + to_image[2, 3]
+        row = to_image[0, 0] * x + to_image[0, 1] * y + to_image[0, 2] * z + to_image[0, 3]
+        if not low[0] * depth <= row <= high[0] * depth:
+            continue
+        column = to_image[1, 0] * x + to_image[1, 1] * y + to_image[1, 2] * z + to_image[1, 3]
+        if low[1] * depth <= column <= high[1] * depth:
+            return True
+    return False

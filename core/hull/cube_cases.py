@@ -18,9 +18,7 @@ from numpy.typing import NDArray
 Loop = tuple[int, ...]
 
 AXIS_BITS = (2, 1, 4)
-EDGES = [
-    (corner, corner | bit) for bit in AXIS_BITS for corner in range(8) if not corner & bit
-]
+EDGES = [(corner, corner | bit) for bit in AXIS_BITS for corner in range(8) if not corner & bit]
 MOST_TRIANGLES = 5
 
 
@@ -36,16 +34,19 @@ def triangle_table() -> NDArray[np.int8]:
 
 
 @cache
-def edge_table() -> NDArray[np.int8]:
-    """Return (12, 3): which index buffer holds each edge's vertex, and its dy and dz there.
+def edge_tables() -> NDArray[np.int8]:
+    """Return (2, 12, 3): which index buffer holds each edge's vertex, and its dy and dz there.
 
-    Buffers: 0 edges along x, 1 and 2 those along y of the near and far plane, 3 and 4 along z.
+    Buffer 0 is for edges along x. Of the buffers 1 and 2 for edges along y, and 3 and 4 along z,
+    the first is the near plane's in the first table and the far plane's in the second: planes
+    take turns.
     """
-    rows = []
-    for number, (corner, _) in enumerate(EDGES):
-        axis, dx = number // 4, (corner >> 1) & 1
-        rows.append([0 if axis == 0 else 2 * axis - 1 + dx, corner & 1, corner >> 2])
-    return np.array(rows, dtype=np.int8)
+    tables = np.zeros((2, 12, 3), dtype=np.int8)
+    for turn in range(2):
+        for number, (corner, _) in enumerate(EDGES):
+            axis, far = number // 4, (corner >> 1 & 1) ^ turn
+            tables[turn, number] = 0 if axis == 0 else 2 * axis - 1 + far, corner & 1, corner >> 2
+    return tables
 
 
 @cache
@@ -56,7 +57,7 @@ def loops(case: int) -> tuple[Loop, ...]:
         follows.update(_face_joins(case, face))
     found: list[Loop] = []
     while follows:
-        edge, follower = next(iter(follows.items()))
+        edge = next(iter(follows))
         loop = []
         while edge in follows:
             loop.append(edge)

@@ -14,8 +14,8 @@ from core.arrays import Floats
 from core.geometry.grid import VoxelGrid
 from core.hull.changes import changed_edges
 from core.hull.closed_mesh import Surface
-from core.hull.crossings import CrossingTables, cross_grid_edges
-from core.hull.cube_cases import edge_table, triangle_table
+from core.hull.crossings import CrossingTables, any_within, cross_grid_edges
+from core.hull.cube_cases import edge_tables, triangle_table
 from core.hull.edge_cells import EdgeCells, longest_grid_edge_px
 from core.hull.slab_mesh import mesh_slab
 from core.hull.threads import in_parallel
@@ -78,28 +78,30 @@ class SurfaceMesher:
         for number, (first, last) in enumerate(slab_layers(self._volume.grid)):
             if flipped[max(first, 0) : last + 1].any():
                 self._slabs[number] = None
-        for number, slab in enumerate(self._slabs):
-            if slab and any(self._touches(slab, self._voters[n], voters[n]) for n in replaced):
-                self._slabs[number] = None
+        for number in replaced:
+            self._forget_near(self._voters[number], voters[number])
 
-    def _touches(self, slab: Slab, old: Voter, new: Voter) -> bool:
-        """Return whether a vertex of a slab lies near what changed of an outline."""
+    def _forget_near(self, old: Voter, new: Voter) -> None:
+        """Drop the slabs that have a vertex near what changed of an outline."""
         if not np.array_equal(old.to_image, new.to_image):
-            return True
+            self._slabs = [None] * len(self._slabs)
+            return
         points = changed_edges(old.outline, new.outline)[0]
         if len(points) == 0:
-            return False
+            return
         reach = longest_grid_edge_px(new.to_image, self._volume.grid)
         low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
-        seen = slab.vertices @ new.to_image[:, :3].T + new.to_image[:, 3]
-        image = seen[:, :2] / seen[:, 2:]
-        return bool(np.any(np.all((image >= low) & (image <= high), axis=1)))
+        for number, slab in enumerate(self._slabs):
+            if slab and any_within(slab.vertices, new.to_image, low, high):
+                self._slabs[number] = None
 
     def _mesh_missing(self, voters: dict[int, Voter], threshold: int) -> None:
         missing = [number for number, slab in enumerate(self._slabs) if slab is None]
         if not missing:
             return
-        kept = {n: cells for n, cells in self._cells.items() if voters.get(n) is self._voters.get(n)}
+        kept = {
+            n: cells for n, cells in self._cells.items() if voters.get(n) is self._voters.get(n)
+        }
         new = [n for n in voters if n not in kept]
         made = in_parallel(lambda n: cells_of(voters[n], self._volume.grid), new)
         self._cells = {**kept, **dict(zip(new, made, strict=True))}
@@ -161,7 +163,7 @@ def exact_slab(
     votes: Votes, threshold: int, layers: tuple[int, int], tables: CrossingTables
 ) -> Slab:
     """Return one slab's mesh with every vertex where the hull's boundary is."""
-    crossed, faces = mesh_slab(votes, threshold, *layers, triangle_table(), edge_table())
+    crossed, faces = mesh_slab(votes, threshold, *layers, triangle_table(), edge_tables())
     vertices, _ = cross_grid_edges(
         crossed,
         votes,

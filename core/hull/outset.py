@@ -1,5 +1,7 @@
 """Compiled checks of an outline's rings, and the step outward that makes "on" mean "inside"."""
 
+from typing import Any
+
 import numba
 import numpy as np
 from numpy.typing import NDArray
@@ -93,7 +95,7 @@ def _edges_meet(points: Floats, offsets: NDArray[np.int64]) -> bool:  # pragma: 
 
 
 @numba.njit(**Compiled)  # type: ignore[untyped-decorator]
-def _folds_back(points: Floats, i: int, j: int) -> bool:  # pragma: no cover - compiled
+def _folds_back(points: Floats, i: int, j: int) -> Any:  # pragma: no cover - compiled
     """Return whether edge j, which follows edge i, runs back along it."""
     ar, ac = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
     br, bc = points[j + 1, 0] - points[j, 0], points[j + 1, 1] - points[j, 1]
@@ -111,7 +113,7 @@ def _meet(points: Floats, i: int, j: int) -> bool:  # pragma: no cover - compile
 
 
 @numba.njit(**Compiled)  # type: ignore[untyped-decorator]
-def _apart(points: Floats, i: int, j: int) -> bool:  # pragma: no cover - compiled
+def _apart(points: Floats, i: int, j: int) -> Any:  # pragma: no cover - compiled
     """Return whether edge j lies wholly on one side of the line through edge i."""
     r, c = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
     limit = NEAREST_PX * np.sqrt(r * r + c * c)

@@ -30,7 +30,8 @@ def votes_of(points: Floats, rings: tuple[Floats, ...], on_px: float = 0.0) -> N
             on |= _is_on_edge(start, end, on_px)
             turns += _quadrant_steps(start, end)
     # Steps 7 and 8: a hole's −4 takes its ring's +4 back.
-    return on | (turns != 0)
+    votes: NDArray[np.bool_] = on | (turns != 0)
+    return votes
 
 
 def _is_on_edge(start: Floats, end: Floats, on_px: float) -> NDArray[np.bool_]:
@@ -42,7 +43,8 @@ def _is_on_edge(start: Floats, end: Floats, on_px: float) -> NDArray[np.bool_]:
     edge = end - start
     length = np.hypot(edge[:, 0], edge[:, 1])
     between = np.sum(start * end, axis=1) <= on_px * length
-    return between & (np.abs(_cross(start, end)) <= on_px * length)
+    on: NDArray[np.bool_] = between & (np.abs(_cross(start, end)) <= on_px * length)
+    return on
 
 
 def _quadrant_steps(start: Floats, end: Floats) -> NDArray[np.int64]:

@@ -8,6 +8,7 @@ an affine view the first one only translates from plane to plane.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numba
 import numpy as np
@@ -79,9 +80,7 @@ def pulled_back(
     """
     ordered = np.ascontiguousarray(to_image[:, [axis, 1 - axis, 2, 3]])
     place, crossing, flips = _planes(points, ordered)
-    return PulledBack(
-        place=place, crossing=crossing, flips=flips, offsets=offsets, weights=weights
-    )
+    return PulledBack(place=place, crossing=crossing, flips=flips, offsets=offsets, weights=weights)
 
 
 def joined(parts: list[PulledBack]) -> PulledBack:
@@ -170,6 +169,6 @@ def _edge_line(
 @numba.njit(**Compiled)  # type: ignore[untyped-decorator]
 def _seen(
     a: float, b: float, c: float, to_image: Floats, column: int
-) -> float:  # pragma: no cover - compiled
+) -> Any:  # pragma: no cover - compiled
     """Return an image line applied to one column of the map to the image."""
     return a * to_image[0, column] + b * to_image[1, column] + c * to_image[2, column]

@@ -11,7 +11,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from core.hull.threads import Compiled
+from core.hull.threads import Compiled, InnerLoop
 
 
 @numba.njit(**Compiled)  # type: ignore[untyped-decorator]
@@ -21,7 +21,7 @@ def mesh_slab(
     first: int,
     last: int,
     triangle_table: NDArray[np.int8],
-    edge_table: NDArray[np.int8],
+    edge_tables: NDArray[np.int8],
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:  # pragma: no cover - compiled
     """Return the crossed grid edges and the triangles of the layers first … last − 1.
 
@@ -34,7 +34,7 @@ def mesh_slab(
         first: layer to begin with.
         last: layer before which to stop.
         triangle_table: of `cube_cases`.
-        edge_table: of `cube_cases`.
+        edge_tables: of `cube_cases`.
 
     Returns:
         crossed: (edges, 4) lower end's x, y, z and the axis, plus 4 if the lower end is inside.
@@ -49,24 +49,31 @@ def mesh_slab(
     crossed, faces = np.empty((1024, 4), dtype=np.int32), np.empty((2048, 3), dtype=np.int32)
     _fill_plane(votes, threshold, first, near, near_used)
     count, own, face_count = 0, 0, 0
-    crossed, count = _number_plane(near, near_used, first, index[1], index[3], flags, crossed, count)
+    crossed = _with_room(crossed, 0, 5 * near.size)
+    count = _number_plane(near, near_used, first, index[1], index[3], flags, crossed, count)
     for x in range(first, last):
+        turn = (x - first) & 1
         _fill_plane(votes, threshold, x + 1, far, far_used)
         either = near_used | far_used
-        crossed, count = _number_between(near, far, either, x, index[0], flags, crossed, count)
-        own = count
-        crossed, count = _number_plane(far, far_used, x + 1, index[2], index[4], flags, crossed, count)
-        faces, face_count = _join(
-            near, far, either, index, flags, triangle_table, edge_table, faces, face_count
+        crossed = _with_room(crossed, count, count + 3 * near.size)
+        near_start, own = (
+            own,
+            _number_between(near, far, either, x, index[0], flags, crossed, count),
+        )
+        count = _number_plane(
+            far, far_used, x + 1, index[2 - turn], index[4 - turn], flags, crossed, own
+        )
+        # An edge has at most four cubes around it, and a cube fewer triangles than crossed edges.
+        faces = _with_room(faces, face_count, face_count + 4 * (count - near_start))
+        face_count = _join(
+            near, far, either, index, flags, triangle_table, edge_tables[turn], faces, face_count
         )
         near, far = far, near
         near_used, far_used = far_used, near_used
-        index[1] = index[2]
-        index[3] = index[4]
     return crossed[:own].copy(), faces[:face_count].copy()
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _fill_plane(
     votes: NDArray[Any], threshold: int, x: int, plane: NDArray[np.uint8], used: NDArray[np.bool_]
 ) -> None:  # pragma: no cover - compiled
@@ -80,7 +87,7 @@ def _fill_plane(
         used[y + 1] = _fill_row(votes[x, y], limit, plane[y + 1, 1:])
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _fill_row(
     votes: NDArray[Any], limit: int, row: NDArray[np.uint8]
 ) -> bool:  # pragma: no cover - compiled
@@ -92,7 +99,7 @@ def _fill_row(
     return some
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _number_plane(
     plane: NDArray[np.uint8],
     used: NDArray[np.bool_],
@@ -102,8 +109,8 @@ def _number_plane(
     flags: NDArray[np.uint8],
     crossed: NDArray[np.int32],
     count: int,
-) -> tuple[NDArray[np.int32], int]:  # pragma: no cover - compiled
-    """Number the crossed edges within a plane."""
+) -> int:  # pragma: no cover - compiled
+    """Number the crossed edges within a plane, and return how many there are by now."""
     width = plane.shape[1]
     words = flags.view(np.uint64)
     for y in range(plane.shape[0] - 1):
@@ -112,7 +119,6 @@ def _number_plane(
         row, above = plane[y], plane[y + 1]
         for z in range(width - 1):
             flags[z] = (row[z] ^ above[z]) | (row[z] ^ row[z + 1]) << 1
-        crossed = _with_room(crossed, count + 2 * width)
         for word in range(len(words)):
             if words[word] == 0:
                 continue
@@ -125,10 +131,10 @@ def _number_plane(
                     along_z[y, z] = count
                     _cross(crossed, count, x, y - 1, z - 1, 2 + 4 * row[z])
                     count += 1
-    return crossed, count
+    return count
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _number_between(
     near: NDArray[np.uint8],
     far: NDArray[np.uint8],
@@ -138,8 +144,8 @@ def _number_between(
     flags: NDArray[np.uint8],
     crossed: NDArray[np.int32],
     count: int,
-) -> tuple[NDArray[np.int32], int]:  # pragma: no cover - compiled
-    """Number the crossed edges between two planes."""
+) -> int:  # pragma: no cover - compiled
+    """Number the crossed edges between two planes, and return how many there are by now."""
     width = near.shape[1]
     words = flags.view(np.uint64)
     for y in range(near.shape[0]):
@@ -148,7 +154,6 @@ def _number_between(
         one, other = near[y], far[y]
         for z in range(width):
             flags[z] = one[z] ^ other[z]
-        crossed = _with_room(crossed, count + width)
         for word in range(len(words)):
             if words[word] == 0:
                 continue
@@ -157,10 +162,10 @@ def _number_between(
                     along_x[y, z] = count
                     _cross(crossed, count, x, y - 1, z - 1, 4 * one[z])
                     count += 1
-    return crossed, count
+    return count
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _cross(
     crossed: NDArray[np.int32], number: int, x: int, y: int, z: int, code: int
 ) -> None:  # pragma: no cover - compiled
@@ -169,15 +174,17 @@ def _cross(
 
 
 @numba.njit(**Compiled)  # type: ignore[untyped-decorator]
-def _with_room(rows: NDArray[Any], needed: int) -> NDArray[Any]:  # pragma: no cover - compiled
+def _with_room(
+    rows: NDArray[Any], used: int, needed: int
+) -> NDArray[Any]:  # pragma: no cover - compiled
     if needed <= len(rows):
         return rows
     larger = np.empty((max(needed, 2 * len(rows)), rows.shape[1]), dtype=rows.dtype)
-    larger[: len(rows)] = rows
+    larger[:used] = rows[:used]
     return larger
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _join(
     near: NDArray[np.uint8],
     far: NDArray[np.uint8],
@@ -188,8 +195,8 @@ def _join(
     edge_table: NDArray[np.int8],
     faces: NDArray[np.int32],
     count: int,
-) -> tuple[NDArray[np.int32], int]:  # pragma: no cover - compiled
-    """Add the triangles of one layer of cubes."""
+) -> int:  # pragma: no cover - compiled
+    """Add the triangles of one layer of cubes, and return how many there are by now."""
     width = near.shape[1]
     for y in range(near.shape[0] - 1):
         if not (used[y] or used[y + 1]):
@@ -197,7 +204,6 @@ def _join(
         a, b, c, d = near[y], near[y + 1], far[y], far[y + 1]
         for z in range(width):
             flags[z] = a[z] | b[z] << 1 | c[z] << 2 | d[z] << 3
-        faces = _with_room(faces, count + 5 * width)
         for z in range(width - 1):
             case = flags[z] | flags[z + 1] << 4
             if not 0 < case < 255:
@@ -208,4 +214,4 @@ def _join(
                 faces[count + corner // 3, corner % 3] = number
             count += triangle_table[case, 0]
     flags[:] = 0
-    return faces, count
+    return count

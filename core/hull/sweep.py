@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.arrays import Floats
-from core.hull.threads import Compiled
+from core.hull.threads import Compiled, InnerLoop
+
 PLANES_AT_ONCE = 8
 
 
@@ -51,6 +52,43 @@ def sweep_planes(
     difference = np.zeros((depth, (lines + 1) * places), dtype=volume.dtype)
     running = np.empty((depth, places), dtype=volume.dtype)
     change = np.empty(place.shape[1], dtype=np.int32)
+    _sweep_planes(
+        volume,
+        axis,
+        first,
+        last,
+        place,
+        crossing,
+        flips,
+        offsets,
+        weights,
+        limit,
+        flipped,
+        difference,
+        running,
+        change,
+    )
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _sweep_planes(
+    volume: NDArray[Any],
+    axis: int,
+    first: int,
+    last: int,
+    place: Floats,
+    crossing: Floats,
+    flips: NDArray[np.uint8],
+    offsets: NDArray[np.int64],
+    weights: NDArray[Any],
+    limit: int,
+    flipped: NDArray[np.bool_],
+    difference: NDArray[Any],
+    running: NDArray[Any],
+    change: NDArray[np.int32],
+) -> None:  # pragma: no cover - compiled
+    """Sweep as many planes at once as `difference` and `running` have room for."""
+    lines, places, depth = volume.shape[axis], volume.shape[2], len(running)
     for start in range(first, last, depth):
         planes = min(depth, last - start)
         low, high = lines, 0
@@ -72,7 +110,7 @@ def sweep_planes(
         difference[:, lines * places :] = 0
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _add_row(
     target: NDArray[Any], running: NDArray[Any], difference: NDArray[Any]
 ) -> None:  # pragma: no cover - compiled
@@ -83,7 +121,7 @@ def _add_row(
         difference[place] = 0
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _add_row_watching(
     target: NDArray[Any], running: NDArray[Any], difference: NDArray[Any], limit: int
 ) -> bool:  # pragma: no cover - compiled
@@ -99,7 +137,7 @@ def _add_row_watching(
     return some
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _change_places(
     base: Floats, shift: Floats, plane: int, places: int, change: NDArray[np.int32]
 ) -> None:  # pragma: no cover - compiled
@@ -109,7 +147,7 @@ def _change_places(
         change[i] = np.int32(at + 1.0)
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _mark(
     difference: NDArray[Any],
     rows: int,
@@ -147,7 +185,7 @@ def _mark(
     return int(max(low, 0.0)), int(min(high, float(rows)))
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _mark_run(
     difference: NDArray[Any],
     rows: int,

@@ -9,12 +9,14 @@ import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from itertools import pairwise
 from typing import TypeVar
 
 Compiled = {"cache": True, "nogil": True, "error_model": "numpy"}
 """How every kernel is compiled: kept on disk, free of the lock, dividing as NumPy does."""
-Inlined = {**Compiled, "inline": "always"}
-"""For what is called per voxel: passing an array to a function counts a reference, atomically."""
+InnerLoop = {**Compiled, "_nrt": False}
+"""For loops that allocate nothing: without it every slice and every array passed on counts
+references, atomically, and two threads that share an array wait for each other at each count."""
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -34,7 +36,7 @@ def chunks(count: int, *, per_thread: int = 4) -> list[tuple[int, int]]:
     """Return ranges (first, past the last) that together cover `count` items evenly."""
     parts = min(count, per_thread * thread_count())
     ends = [count * part // parts for part in range(parts + 1)]
-    return list(zip(ends[:-1], ends[1:], strict=True))
+    return list(pairwise(ends))
 
 
 @cache

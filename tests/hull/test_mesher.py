@@ -1,0 +1,99 @@
+import numpy as np
+import pytest
+import trimesh
+
+from core.geometry.grid import VoxelGrid
+from core.geometry.projection import Projection
+from core.hull.blame import removed_alone_m3
+from core.hull.reprojection import reprojected_mask
+from core.hull.surface import hull_surface
+from core.hull.view import View
+from core.hull.votes import VoteVolume
+from core.hull.warm_up import warm_up
+from core.silhouettes.silhouette import Silhouette
+
+GRID = VoxelGrid.cube(side_m=8.0, spacing_m=0.25)
+HALF_M = np.array([2.03, 1.41, 0.77])
+
+
+def box_view(axis, half_m=HALF_M, rows_px=40.0):
+    """The outline of a box seen along an axis, 10 pixels per metre."""
+    others = [other for other in range(3) if other != axis]
+    reach = 10 * np.asarray(half_m)[others]
+    ring = rows_px + reach * np.array([[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]])
+    matrix = np.zeros((2, 4))
+    matrix[[0, 1], others] = 10
+    matrix[:, 3] = rows_px
+    silhouette = Silhouette(rings=(ring,), image_shape=(80, 80), claim="complete")
+    return View(silhouette=silhouette, projection=Projection(matrix=matrix))
+
+
+def box_volume():
+    volume = VoteVolume(GRID)
+    numbers = volume.add_many([box_view(axis) for axis in range(3)])
+    return volume, numbers
+
+
+def test_vertices_lie_on_the_true_hull_between_voxels():
+    surface = hull_surface(box_volume()[0])
+    beyond = np.abs(surface.vertices_m) - HALF_M
+    assert np.abs(beyond.max(axis=1)).max() < 1e-6
+    assert surface.vertices_m.max(axis=0) == pytest.approx(HALF_M, abs=1e-6)
+    mesh = trimesh.Trimesh(surface.vertices_m, surface.faces)
+    assert mesh.is_watertight
+    assert mesh.is_winding_consistent
+    # Between exact vertices marching cubes cuts edges and corners off.
+    assert surface.volume_m3() == pytest.approx(8 * HALF_M.prod(), rel=0.02)
+
+
+def test_a_view_alone_is_blamed_for_what_it_alone_removes():
+    volume, numbers = box_volume()
+    narrow = [1.0, *HALF_M[1:]]
+    volume.replace(numbers[2], box_view(2, narrow))
+    blamed = removed_alone_m3(volume)
+    kept = VoteVolume(GRID)
+    kept.add_many([box_view(0), box_view(1)])
+    removed = (kept.hull().sum() - volume.hull().sum()) * GRID.spacing_m**3
+    assert blamed[numbers[2]] == pytest.approx(removed)
+
+
+def test_a_hull_reprojects_into_its_silhouette():
+    volume, _ = box_volume()
+    view = box_view(1)
+    mask = reprojected_mask(hull_surface(volume), view.projection, view.silhouette.image_shape)
+    assert not np.any(mask & ~view.silhouette.mask())
+    assert mask.sum() > 0.95 * view.silhouette.mask().sum()
+
+
+def test_a_self_crossing_outline_is_repaired_and_said():
+    view = box_view(0)
+    crossed = view.silhouette.rings[0][[0, 2, 1, 3]]
+    silhouette = Silhouette(rings=(crossed,), image_shape=(80, 80), claim="complete")
+    volume = VoteVolume(GRID)
+    number = volume.add(View(silhouette=silhouette, projection=view.projection))
+    assert "crossed itself" in volume.repair_note(number)
+    assert volume.votes.max() == 1
+
+
+def test_an_outline_on_a_line_is_refused():
+    line = np.array([[0.0, 0.0], [5.0, 5.0], [9.0, 9.0]])
+    silhouette = Silhouette(rings=(line,), image_shape=(80, 80), claim="complete")
+    with pytest.raises(ValueError, match="encloses no area"):
+        VoteVolume(GRID).add(View(silhouette=silhouette, projection=box_view(0).projection))
+
+
+def test_an_unknown_view_is_refused_with_those_there_are():
+    volume, _ = box_volume()
+    with pytest.raises(ValueError, match="no view number 7 in this volume; it has 0, 1, 2"):
+        volume.remove(7)
+
+
+def test_more_than_255_views_vote_exactly():
+    volume = VoteVolume(GRID)
+    volume.add_many([box_view(0)] * 300)
+    assert volume.votes.max() == 300
+    assert volume.votes.dtype == np.uint16
+
+
+def test_warming_up_runs_every_kernel():
+    warm_up()
