@@ -101,10 +101,10 @@ def satellite(segments: int = 64) -> tuple[Floats, ...]:
     ]
     for side in (-1, 1):
         parts.append(_box((-thin, thin), (side * 1.4, side * half), (-0.8, 0.8)))
-        for height in (-0.4, 0.4):
-            parts.append(
-                _box((-thin, thin), (side * 0.9, side * 1.45), (height - 0.03, height + 0.03))
-            )
+        parts += [
+            _box((-thin, thin), (side * 0.9, side * 1.45), (height - 0.03, height + 0.03))
+            for height in (-0.4, 0.4)
+        ]
     return tuple(ATTITUDE.apply(part) for part in parts)
 
 

@@ -21,5 +21,5 @@ def votes(task: Task, planes: NDArray[np.int64]) -> NDArray[Any]:
             inside = np.zeros(len(points), dtype=bool)
             for path in paths:
                 inside ^= path.contains_points(points)
-            target += inside.reshape(target.shape)
+            np.add(target, inside.reshape(target.shape), out=target)
     return counted

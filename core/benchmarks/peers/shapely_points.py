@@ -18,7 +18,8 @@ def votes(task: Task, planes: NDArray[np.int64]) -> NDArray[Any]:
     shapely.prepare(areas)
     for target, plane in zip(counted, planes, strict=True):
         for view, area in enumerate(areas):
-            target += shapely.intersects_xy(area, *image_points(task, view, int(plane)))
+            inside = shapely.intersects_xy(area, *image_points(task, view, int(plane)))
+            np.add(target, inside, out=target)
     return counted
 
 
