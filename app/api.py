@@ -120,8 +120,8 @@ async def _send_states(page: WebSocket, stream: LiveStream, changes: Changes) ->
 
 
 async def _until_hung_up(page: WebSocket) -> None:
-    async for _ in page.iter_text():
-        pass
+    while (await page.receive())["type"] != "websocket.disconnect":
+        pass  # whatever it says, it was not asked
 
 
 def _state(stream: LiveStream) -> dict[str, Any]:

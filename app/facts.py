@@ -11,6 +11,7 @@ from app.source import Source
 from core.arrays import Floats
 from core.geometry.track import angles_from_line_of_sight
 from core.measurement.extents import Extent
+from core.measurement.lines import LineMeasurement
 
 
 def state_facts(snapshot: Snapshot, source: Source, side_m: float) -> dict[str, Any]:
@@ -29,6 +30,7 @@ def state_facts(snapshot: Snapshot, source: Source, side_m: float) -> dict[str, 
         "speeds_hz": SPEEDS_HZ,
         "frames": len(snapshot.records),
         "times_s": [record.frame.time_s for record in snapshot.records],
+        "labels": [record.frame.label for record in snapshot.records],
         "shown": None if snapshot.shown is None else snapshot.shown.number,
         "following": snapshot.chosen is None,
         "window_m": side_m,
@@ -41,22 +43,29 @@ def hull_facts(record: Record) -> dict[str, Any]:
     is_bounded = all(extent.is_bounded for extent in record.extents)
     return {
         "frames": record.number,
+        "views": record.voting,
         "is_empty": record.face_count == 0,
         "vertices": record.vertex_count,
         "faces": record.face_count,
         "volume_m3": record.volume_m3 if is_bounded else None,
         "extents": [_extent_facts(extent) for extent in record.extents],
+        "lines": [_line_facts(line) for line in record.lines],
         "unobserved": _vector(record.unobserved),
     }
 
 
 def frame_facts(record: Record) -> dict[str, Any]:
-    """Return a frame's circumstances, its silhouette, and the hull after it."""
+    """Return a frame's circumstances, its silhouette, and the hull after it.
+
+    `theta_deg` and `phi_deg` are the line of sight's angles in the target frame, not the station's
+    elevation and azimuth.
+    """
     frame = record.frame
-    elevation_rad, azimuth_rad = angles_from_line_of_sight(frame.line_of_sight)
+    theta_rad, phi_rad = angles_from_line_of_sight(frame.line_of_sight)
     return {
         "number": record.number,
         "label": frame.label,
+        "note": record.note,
         "sensor": frame.sensor,
         "time_s": frame.time_s,
         "shape": frame.shape,
@@ -66,8 +75,8 @@ def frame_facts(record: Record) -> dict[str, Any]:
         "row_resolution_m": frame.row_resolution_m,
         "column_resolution_m": frame.column_resolution_m,
         "line_of_sight": _vector(frame.line_of_sight),
-        "elevation_deg": float(np.degrees(elevation_rad)),
-        "azimuth_deg": float(np.degrees(azimuth_rad)),
+        "theta_deg": float(np.degrees(theta_rad)),
+        "phi_deg": float(np.degrees(phi_rad)),
         "image": {"floor_db": FLOOR_DB, "step_db": STEP_DB},
         "silhouette": {
             "rings": [ring.tolist() for ring in record.silhouette.rings],
@@ -85,6 +94,14 @@ def _extent_facts(extent: Extent) -> dict[str, Any]:
         "value_m": extent.value_m if extent.is_bounded else None,
         "is_bounded": extent.is_bounded,
         "direction": _vector(extent.direction),
+    }
+
+
+def _line_facts(line: LineMeasurement) -> dict[str, Any]:
+    return {
+        "name": line.name,
+        "length_m": line.length_m,
+        "direction": _vector(line.direction),
     }
 
 

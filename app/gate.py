@@ -1,8 +1,8 @@
 """What every request passes first: who may ask, how much may be sent, what the browser may do."""
 
 import json
+import re
 from collections.abc import Iterable
-from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -24,6 +24,8 @@ PAGE_POLICY = "; ".join(
         "frame-ancestors 'none'",
     ]
 )
+
+_HOST = re.compile(r"(?P<name>[a-z0-9.-]+|\[[0-9a-f:.]+\])(:[0-9]{1,5})?")
 
 _HEADERS = {
     "Content-Security-Policy": PAGE_POLICY,
@@ -62,28 +64,44 @@ class Gate:
 
 
 def _refusal(headers: Headers, host_names: frozenset[str]) -> tuple[int, str]:
-    host = headers.get("host", "")
+    # A second Host or Origin shows in the joined text, which then is neither name nor origin.
+    host = ", ".join(headers.getlist("host"))
     if _host_name(host) not in host_names:
         return 421, (
-            f"This server answers to {', '.join(sorted(host_names))}, not to {host!r}; "
+            f"This server answers to {', '.join(sorted(host_names))}, not to {_short(host)!r}; "
             "open the address that it printed."
         )
-    origin = headers.get("origin")
-    if origin is not None and urlsplit(origin).netloc.lower() != host.lower():
-        return 403, f"Requests from {origin} are refused; only this server's own page may ask."
+    origin = ", ".join(headers.getlist("origin"))
+    if "origin" in headers and not _is_own(origin, host):
+        return 403, (
+            f"Requests from {_short(origin)} are refused; only this server's own page may ask."
+        )
     length = headers.get("content-length", "0")
-    if not length.isdecimal() or int(length) > LARGEST_BODY_BYTES:
+    if not _is_allowed(length):
         return 413, (
-            f"The request's body may hold at most {LARGEST_BODY_BYTES} bytes; got {length}."
+            f"The request's body may hold at most {LARGEST_BODY_BYTES} bytes; got {_short(length)}."
         )
     return 200, ""
 
 
 def _host_name(host: str) -> str:
-    try:
-        return (urlsplit(f"//{host}").hostname or "").lower()
-    except ValueError:
-        return ""
+    """Return the name in a Host header, empty where it is not a plain name with or without port."""
+    plain = _HOST.fullmatch(host.lower())
+    return plain["name"].strip("[]") if plain else ""
+
+
+def _is_own(origin: str, host: str) -> bool:
+    return origin.lower() in (f"http://{host}".lower(), f"https://{host}".lower())
+
+
+def _is_allowed(length: str) -> bool:
+    digits = length.lstrip("0")
+    is_number = length.isascii() and length.isdecimal()
+    return is_number and len(digits) < 10 and int(digits or "0") <= LARGEST_BODY_BYTES
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 80 else f"{text[:80]}…"
 
 
 def _limited(receive: Receive) -> Receive:

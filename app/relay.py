@@ -5,6 +5,7 @@ from collections.abc import Coroutine
 from contextlib import suppress
 from typing import Any
 
+from starlette.exceptions import WebSocketException
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
@@ -14,7 +15,11 @@ from app.viser_server import SECRET_HEADER, ViserAddress
 
 
 async def relay(page: WebSocket, viewport: ViserAddress) -> None:
-    """Carry messages between the page and the viser server until either hangs up."""
+    """Carry messages between the page and the viser server until either hangs up.
+
+    Raises:
+        WebSocketException: the page sent text, which viser's client never does.
+    """
     if viewport.subprotocol not in page.scope.get("subprotocols", ()):
         await page.close(1002, f"The viewport speaks {viewport.subprotocol}; reload the page.")
         return
@@ -48,8 +53,10 @@ async def first_to_end(*activities: Coroutine[Any, Any, None]) -> None:
 
 
 async def _to_viser(page: WebSocket, viser: ClientConnection) -> None:
-    async for message in page.iter_bytes():
-        await viser.send(message)
+    while (message := await page.receive())["type"] != "websocket.disconnect":
+        if message.get("bytes") is None:
+            raise WebSocketException(1003, "The viewport takes binary messages only.")
+        await viser.send(message["bytes"])
 
 
 async def _to_page(viser: ClientConnection, page: WebSocket) -> None:

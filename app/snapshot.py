@@ -7,6 +7,7 @@ from core.arrays import Floats
 from core.frame import Frame
 from core.hull.surface import Surface
 from core.measurement.extents import Extent
+from core.measurement.lines import LineMeasurement
 from core.reconstruction import Step
 from core.silhouettes.silhouette import Silhouette
 
@@ -18,19 +19,25 @@ class Record:
     """What is kept of a step: everything but the surface, which only the latest hull needs.
 
     Attributes:
-        number: how many frames had voted, this one included.
-        frame: the frame that voted.
+        number: how many frames had come, this one included.
+        voting: how many of them voted.
+        frame: the frame that came.
         silhouette: its outline.
+        note: what a person should know of this frame, empty if nothing.
         extents: of the hull after it; empty when the hull is.
+        lines: principal lines of the hull after it; empty while an extent of it is open.
         unobserved: (3,) direction that no frame up to this one constrains, or None.
         vertex_count, face_count: of the hull after it.
         volume_m3: of the hull after it.
     """
 
     number: int
+    voting: int
     frame: Frame
     silhouette: Silhouette
+    note: str
     extents: tuple[Extent, ...]
+    lines: tuple[LineMeasurement, ...]
     unobserved: Floats | None
     vertex_count: int
     face_count: int
@@ -78,9 +85,12 @@ def record_of(step: Step) -> Record:
     """Return what is kept of a step."""
     return Record(
         number=step.number,
+        voting=step.voting,
         frame=step.frame,
         silhouette=step.silhouette,
+        note=step.note,
         extents=step.extents,
+        lines=step.lines,
         unobserved=step.unobserved,
         vertex_count=len(step.surface.vertices_m),
         face_count=len(step.surface.faces),

@@ -3,15 +3,15 @@
 import logging
 import threading
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 
+from app.observers import Observer, Observers
 from app.playback import Playback
 from app.snapshot import Snapshot, Status, record_of
 from app.source import Source
 from core.frame import Frame
 from core.reconstruction import ReconstructionSettings, Step, reconstruct
-
-Observer = Callable[[Snapshot], None]
 
 _log = logging.getLogger("radarhull")
 
@@ -21,7 +21,7 @@ class LiveStream:
 
     The next step is computed while the current one is on screen, and held back until playback
     releases it: stepping is immediate, and nothing changes while paused. Observers are called one
-    at a time, in order, from whichever thread caused the change.
+    at a time and in order, and nobody waits for them but the thread that calls them.
     """
 
     def __init__(
@@ -36,8 +36,8 @@ class LiveStream:
         self.settings = settings or ReconstructionSettings()
         self._playback = playback or Playback()
         self._tape = _Tape(source.frames)
-        self._observers: list[Observer] = []
-        self._changed = threading.Condition(threading.RLock())
+        self._observers = Observers()
+        self._changed = threading.Condition()
         self._stopping = False
         self._thread = threading.Thread(target=self._work, name="live-stream", daemon=True)
         self._snapshot = Snapshot(
@@ -48,15 +48,13 @@ class LiveStream:
 
     @property
     def snapshot(self) -> Snapshot:
-        """What is on show now."""
-        with self._changed:
-            return self._snapshot
+        """What is on show now; never waits, so that an event loop may ask."""
+        return self._snapshot
 
     def observe(self, observer: Observer) -> None:
         """Call `observer` with the present snapshot and with every later one."""
-        with self._changed:
-            self._observers.append(observer)
-            observer(self._snapshot)
+        with self._changing():
+            self._observers.add(observer, self._snapshot)
 
     def start(self) -> None:
         """Start computing and playing."""
@@ -66,8 +64,8 @@ class LiveStream:
         """End the thread; a frame that is being computed may outlast `timeout_s`."""
         with self._changed:
             self._stopping = True
-            self._observers.clear()
             self._changed.notify_all()
+        self._observers.dismiss(timeout_s)
         if self._thread.is_alive():
             self._thread.join(timeout_s)
 
@@ -89,7 +87,7 @@ class LiveStream:
 
     def restart(self) -> None:
         """Start again from the first frame; frames already received are not asked for again."""
-        with self._changed:
+        with self._changing():
             self._playback.restart()
             if self._snapshot.status == "failed":
                 self._tape = _Tape(self.source.frames)
@@ -107,14 +105,14 @@ class LiveStream:
         Raises:
             ValueError: there is no such frame yet.
         """
-        with self._changed:
+        with self._changing():
             received = len(self._snapshot.records)
             if number is not None and not 1 <= number <= received:
                 raise ValueError(f"{_frames_so_far(received)}; frame {number} cannot be shown.")
             self._publish(replace(self._snapshot, chosen=None if number == received else number))
 
     def _command(self, change: Callable[[], None], *, follows: bool = False) -> None:
-        with self._changed:
+        with self._changing():
             change()
             before = self._snapshot
             after = replace(
@@ -131,11 +129,17 @@ class LiveStream:
             return "paused"
         return "playing" if snapshot.records else "preparing"
 
+    @contextmanager
+    def _changing(self) -> Iterator[None]:
+        """Hold the lock for a change, and tell observers of it once others may have the lock."""
+        with self._changed:
+            yield
+            self._changed.notify_all()
+        self._observers.call()
+
     def _publish(self, snapshot: Snapshot) -> None:
         self._snapshot = replace(snapshot, serial=self._snapshot.serial + 1)
-        for observer in self._observers:
-            observer(self._snapshot)
-        self._changed.notify_all()
+        self._observers.note(self._snapshot)
 
     def _work(self) -> None:
         while not self._stopping:
@@ -160,7 +164,7 @@ class LiveStream:
     def _release(self, run: int, step: Step) -> bool:
         """Publish a step once playback lets it; tell whether the run goes on."""
         record = record_of(step)
-        with self._changed:
+        with self._changing():
             while not self._is_over(run) and (wait_s := self._playback.wait_s()) != 0:
                 self._changed.wait(wait_s)
             if self._is_over(run):
@@ -175,7 +179,7 @@ class LiveStream:
         return True
 
     def _end(self, run: int, status: Status, message: str = "") -> None:
-        with self._changed:
+        with self._changing():
             if not self._is_over(run):
                 self._publish(replace(self._snapshot, status=status, message=message))
 
@@ -189,21 +193,34 @@ class LiveStream:
 
 
 class _Tape:
-    """Remembers the frames of a source, so that playing them again costs nothing."""
+    """Remembers the frames of a source, so that playing them again costs nothing.
+
+    A source's failure is remembered too: a generator that has raised looks finished afterwards.
+    """
 
     def __init__(self, factory: Callable[[], Iterable[Frame]]) -> None:
         self._factory = factory
         self._recorded: list[Frame] = []
         self._rest: Iterator[Frame] | None = None
+        self._failure: Exception | None = None
 
     def frames(self) -> Iterator[Frame]:
         """Yield the recorded frames, then what the source has left."""
         yield from self._recorded
-        if self._rest is None:
-            self._rest = iter(self._factory())
-        for frame in self._rest:
+        while (frame := self._next()) is not None:
             self._recorded.append(frame)
             yield frame
+
+    def _next(self) -> Frame | None:
+        if self._failure is not None:
+            raise self._failure
+        try:
+            if self._rest is None:
+                self._rest = iter(self._factory())
+            return next(self._rest, None)
+        except Exception as failure:
+            self._failure = failure
+            raise
 
 
 def _frames_so_far(count: int) -> str:

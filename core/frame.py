@@ -11,6 +11,9 @@ from core.geometry.projection import Projection
 
 Sensor = Literal["radar", "optical"]
 
+LENGTHS = ("row_spacing_m", "column_spacing_m", "row_resolution_m", "column_resolution_m")
+"""The fields of a frame that are lengths on the target, each positive or None."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Frame:
@@ -51,6 +54,12 @@ class Frame:
         if abs(float(np.linalg.norm(line_of_sight)) - 1) > 1e-6:
             raise ValueError(f"The line of sight must be a unit vector, got {line_of_sight}.")
         object.__setattr__(self, "line_of_sight", line_of_sight)
+        if not np.isfinite(self.time_s):
+            raise ValueError(f"A frame's time must be finite seconds, got {self.time_s}.")
+        for name in LENGTHS:
+            length_m = getattr(self, name)
+            if length_m is not None and not (np.isfinite(length_m) and length_m > 0):
+                raise ValueError(f"{name} must be positive metres or unknown, got {length_m}.")
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -1,20 +1,23 @@
 """The algorithm on one page: frames in, a hull that shrinks view by view out."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from core.arrays import Floats
 from core.frame import Frame
 from core.geometry.grid import VoxelGrid
-from core.geometry.projection import Projection
 from core.hull.registration import centroid_registered
 from core.hull.shadow import CarvingRule, carving_view
-from core.hull.surface import Surface, hull_surface
+from core.hull.surface import EMPTY_SURFACE, Surface, hull_surface
 from core.hull.view import View
 from core.hull.votes import VoteVolume
 from core.measurement.extents import Extent, axis_extents, unobserved_direction
+from core.measurement.lines import LineMeasurement, principal_lines
 from core.silhouettes.extraction import ExtractionSettings, extract_silhouette
 from core.silhouettes.silhouette import Silhouette
+
+LINE_NAMES = ("span", "length", "diameter")
+"""Of the principal lines, longest first, as they are called on a laboratory with solar panels."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,11 +36,17 @@ class ReconstructionSettings:
     """
 
     spacing_m: float = 0.15
-    side_m: float = 24.0
+    side_m: float = 21.0
     rule: CarvingRule = "shadow"
     tolerated_misses: int = 0
     registers_centroids: bool = False
     extraction: ExtractionSettings = field(default_factory=ExtractionSettings)
+
+    def __post_init__(self) -> None:
+        if self.tolerated_misses < 0:
+            raise ValueError(
+                f"Tolerated misses are a number of views, 0 or more; got {self.tolerated_misses}."
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -45,21 +54,28 @@ class Step:
     """The state after one more frame.
 
     Attributes:
-        number: how many frames have voted, this one included.
-        frame: the frame that voted.
+        number: how many frames have come, this one included.
+        voting: how many of them vote.
+        frame: the frame that came.
         silhouette: its outline.
-        surface: the hull of all frames so far.
-        threshold: votes that a voxel of it has at least.
+        note: what a person should know of this frame, empty if nothing.
+        surface: the hull of all voting frames so far.
+        threshold: votes that a voxel of it has at least, 0 while nothing votes.
         extents: along x, y, z; empty when the hull is.
+        lines: span, length and diameter along the hull's own principal axes; empty while any
+            extent is open or the hull is empty.
         unobserved: (3,) direction that no frame so far constrains, or None.
     """
 
     number: int
+    voting: int
     frame: Frame
     silhouette: Silhouette
+    note: str
     surface: Surface
     threshold: int
     extents: tuple[Extent, ...]
+    lines: tuple[LineMeasurement, ...]
     unobserved: Floats | None
 
 
@@ -68,30 +84,60 @@ def reconstruct(
 ) -> Iterator[Step]:
     """Carve a hull frame by frame and yield the state after each.
 
+    A frame in which no target is detected says nothing of where the target is; it is noted and
+    does not vote.
+
     Raises:
         ValueError: a frame without contrast, or a grid too large.
     """
     settings = settings or ReconstructionSettings()
-    grid = VoxelGrid.cube(side_m=settings.side_m, spacing_m=settings.spacing_m)
-    volume = VoteVolume(grid)
-    projections: list[Projection] = []
+    volume = VoteVolume(VoxelGrid.cube(side_m=settings.side_m, spacing_m=settings.spacing_m))
+    views: list[View] = []
     for number, received in enumerate(frames, start=1):
         silhouette = extract_silhouette(received, settings.extraction)
-        frame = _registered(received, silhouette) if settings.registers_centroids else received
-        view = View(silhouette=silhouette, projection=frame.projection)
-        volume.add(carving_view(view, settings.rule))
-        projections.append(frame.projection)
-        threshold = max(1, number - settings.tolerated_misses)
-        surface = hull_surface(volume, threshold)
-        yield Step(
+        frame = received
+        if not silhouette.is_empty:
+            if settings.registers_centroids:
+                frame = _registered(received, silhouette)
+            view = View(silhouette=silhouette, projection=frame.projection)
+            views.append(carving_view(view, settings.rule))
+            volume.add(views[-1])
+        yield _step(
             number=number,
             frame=frame,
             silhouette=silhouette,
-            surface=surface,
-            threshold=threshold,
-            extents=() if surface.is_empty else axis_extents(surface, grid),
-            unobserved=unobserved_direction(projections),
+            volume=volume,
+            views=views,
+            settings=settings,
         )
+
+
+def _step(
+    *,
+    number: int,
+    frame: Frame,
+    silhouette: Silhouette,
+    volume: VoteVolume,
+    views: Sequence[View],
+    settings: ReconstructionSettings,
+) -> Step:
+    threshold = max(1, len(views) - settings.tolerated_misses) if views else 0
+    surface = hull_surface(volume, threshold) if views else EMPTY_SURFACE
+    extents = () if surface.is_empty else axis_extents(surface, volume.grid, views)
+    is_closed = bool(extents) and all(extent.is_bounded for extent in extents)
+    missing = f"frame {number} shows no target and does not vote" if silhouette.is_empty else ""
+    return Step(
+        number=number,
+        voting=len(views),
+        frame=frame,
+        silhouette=silhouette,
+        note=missing,
+        surface=surface,
+        threshold=threshold,
+        extents=extents,
+        lines=principal_lines(surface, LINE_NAMES) if is_closed else (),
+        unobserved=unobserved_direction([view.projection for view in views]) if views else None,
+    )
 
 
 def _registered(frame: Frame, silhouette: Silhouette) -> Frame:

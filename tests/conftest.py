@@ -1,6 +1,11 @@
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+# Speed is measured by benchmarks; a slow machine must not fail a law.
+settings.register_profile("radarhull", deadline=None)
+settings.load_profile("radarhull")
 
 SHARED_DATA = Path(__file__).parents[2] / "shared" / "data"
 

@@ -1,13 +1,17 @@
 """`radarhull image`."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import tyro
 
 from app.commands.console import progress_bars
 from core.formats.pass_file import RecordedPass, read_pass, write_pass
+from core.formats.pictures import write_picture
+from core.frame import Frame
+from core.radar.backprojection import backprojected_frame
 from core.radar.imaging import ImagingSettings, frame_count, frames
+from core.radar.phase_history import PhaseHistory
 
 
 def image(
@@ -19,6 +23,8 @@ def image(
     overlap: float = 0.0,
     pixels: int = 512,
     pixel_spacing_m: float = 0.06,
+    method: Literal["polar", "backprojection"] = "polar",
+    picture: Path | None = None,
 ) -> None:
     """Image the echoes of a pass file: divide them into coherent intervals, form the frames.
 
@@ -29,6 +35,10 @@ def image(
         overlap: share of an interval that the next one uses again, 0 to below 1.
         pixels: rows and columns of a frame.
         pixel_spacing_m: size of a pixel, metres.
+        method: "polar" divides into coherent intervals and takes wavefronts for planes;
+            "backprojection" makes one image of all pulses on their slant plane with spherical
+            wavefronts, for a near radar such as the measured Gotcha data.
+        picture: also write the brightest frame as a PNG in dB, 60 dB deep.
     """
     recorded = read_pass(pass_file)
     if recorded.history is None:
@@ -39,11 +49,28 @@ def image(
         shape=(pixels, pixels),
         pixel_spacing_m=pixel_spacing_m,
     )
-    total = frame_count(recorded.history, settings)
-    made = []
+    if method == "polar":
+        made = _polar_frames(recorded.history, settings)
+    else:
+        made = [
+            backprojected_frame(
+                recorded.history,
+                shape=settings.shape,
+                row_spacing_m=pixel_spacing_m,
+                column_spacing_m=pixel_spacing_m,
+            )
+        ]
+    write_pass(out, RecordedPass(history=recorded.history, frames=tuple(made)))
+    if picture is not None:
+        write_picture(picture, max(made, key=lambda frame: float(frame.amplitude.max())))
+    print(f"{out}: {len(made)} frames of {pixels} × {pixels} pixels of {pixel_spacing_m} m.")
+
+
+def _polar_frames(history: PhaseHistory, settings: ImagingSettings) -> list[Frame]:
+    total = frame_count(history, settings)
+    made: list[Frame] = []
     with progress_bars() as report:
-        for frame in frames(recorded.history, settings):
+        for frame in frames(history, settings):
             made.append(frame)
             report("frames", len(made), total)
-    write_pass(out, RecordedPass(history=recorded.history, frames=tuple(made)))
-    print(f"{out}: {len(made)} frames of {pixels} × {pixels} pixels of {pixel_spacing_m} m.")
+    return made

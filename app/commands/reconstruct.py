@@ -69,9 +69,7 @@ def reconstruct(
         show_table(_extents_table(last))
 
 
-def _facts(
-    step: Step, settings: ReconstructionSettings, files: Sequence[Path]
-) -> dict[str, Any]:
+def _facts(step: Step, settings: ReconstructionSettings, files: Sequence[Path]) -> dict[str, Any]:
     return {
         "passes": [path.name for path in files],
         "views": step.number,

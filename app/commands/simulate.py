@@ -160,9 +160,7 @@ def _utc(text: str) -> datetime:
     try:
         when = datetime.fromisoformat(text)
     except ValueError as error:
-        raise ValueError(
-            f'A time reads like "2016-03-11T15:00:00" (UTC); got "{text}".'
-        ) from error
+        raise ValueError(f'A time reads like "2016-03-11T15:00:00" (UTC); got "{text}".') from error
     return when.replace(tzinfo=UTC) if when.tzinfo is None else when.astimezone(UTC)
 
 

@@ -1,9 +1,11 @@
 """The built-in demo: three passes of a Tiangong-1-like laboratory over Beijing."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 import numpy as np
+from numpy.random import Generator
 
 from core.frame import Frame
 from core.geometry.orbit import (
@@ -14,6 +16,7 @@ from core.geometry.orbit import (
     satellite_from_elements,
 )
 from core.geometry.track import LineOfSightTrack
+from core.parallel import in_order
 from core.radar.echoes import simulate_echoes
 from core.radar.imaging import ImagingSettings, polar_format_frame
 from core.radar.intervals import CoherentInterval, divide
@@ -86,17 +89,20 @@ def demo_intervals(waveform: Waveform) -> list[tuple[int, LineOfSightTrack, Cohe
     return chosen
 
 
-def demo_frames(*, seed: int = 1, scatterers: int = 40_000) -> Iterator[Frame]:
+def demo_frames(*, seed: int = 1, scatterers: int = 25_000) -> Iterator[Frame]:
     """Simulate the demo's echoes interval by interval and yield their images as they come.
 
     Args:
-        seed: of the random generator.
+        seed: of the random generators, one for the target and one for each interval's noise.
         scatterers: points on the target's surface.
     """
-    random = np.random.default_rng(seed)
     waveform = Waveform()
-    points = surface_scatterers(tiangong_like(), count=scatterers, random=random)
-    for number, track, interval in demo_intervals(waveform):
+    intervals = demo_intervals(waveform)
+    of_target, *of_noise = np.random.default_rng(seed).spawn(1 + len(intervals))
+    points = surface_scatterers(tiangong_like(), count=scatterers, random=of_target)
+
+    def frame(work: tuple[tuple[int, LineOfSightTrack, CoherentInterval], Generator]) -> Frame:
+        (number, track, interval), random = work
         history = simulate_echoes(
             points,
             track.part(interval.start, interval.stop),
@@ -104,11 +110,12 @@ def demo_frames(*, seed: int = 1, scatterers: int = 40_000) -> Iterator[Frame]:
             signal_to_noise_db=20.0,
             random=random,
         )
-        pulses = interval.stop - interval.start
-        alone = CoherentInterval(
+        alone = replace(
+            interval,
             start=0,
-            stop=pulses,
+            stop=interval.stop - interval.start,
             middle=interval.middle - interval.start,
-            turn_rad=interval.turn_rad,
         )
-        yield polar_format_frame(history, alone, ImagingSettings(), label=f"pass {number}")
+        return polar_format_frame(history, alone, ImagingSettings(), label=f"pass {number}")
+
+    yield from in_order(frame, zip(intervals, of_noise, strict=True))

@@ -159,17 +159,19 @@ def _figures(boxes_m: Mapping[str, Floats]) -> tuple[Figure, ...]:
 
 
 def _sides_table(boxes_m: Mapping[str, Floats]) -> Table:
-    true = 1e3 * np.subtract(TRUE_UPPER_M, TRUE_LOWER_M)
-    columns, rows = ["side", "true, mm"], [[axis, f"{true[i]:.1f}"] for i, axis in enumerate("xyz")]
-    rows.append(["mean |error|", ""])
+    true_mm = 1e3 * np.subtract(TRUE_UPPER_M, TRUE_LOWER_M)
+    rows = [("true", *(f"{side:.1f}" for side in true_mm), "")]
     for name, box in boxes_m.items():
         errors = side_errors_percent(box)
-        columns += [f"{name}, mm", "error, %"]
-        for i in range(3):
-            rows[i] += [f"{1e3 * (box[1, i] - box[0, i]):.1f}", f"{errors[i]:+.1f}"]
-        rows[3] += ["", f"{np.abs(errors).mean():.1f}"]
+        sides_mm = 1e3 * (box[1] - box[0])
+        cells = [
+            f"{side:.1f}, {error:+.1f} %" for side, error in zip(sides_mm, errors, strict=True)
+        ]
+        rows.append((name, *cells, f"{np.abs(errors).mean():.1f} %"))
     return Table(
-        title="Sides of the bounding box", columns=tuple(columns), rows=tuple(map(tuple, rows))
+        title="Sides of the bounding box, with errors",
+        columns=("", "x, mm", "y, mm", "z, mm", "mean"),
+        rows=tuple(rows),
     )
 
 

@@ -14,6 +14,7 @@ from core.hull.view import View
 from core.hull.votes import VoteVolume
 from core.measurement.comparison import Agreement, voxel_agreement
 from core.measurement.lines import LineMeasurement, angle_between_lines_rad, principal_lines
+from core.parallel import in_order
 from core.radar.echoes import simulate_echoes
 from core.radar.imaging import ImagingSettings, frames
 from core.radar.scatterers import surface_scatterers
@@ -121,16 +122,23 @@ def simulated_frames(
         pulse_repetition_frequency_hz=waveform.pulse_repetition_frequency_hz,
         random=random,
     )
-    images: list[Frame] = []
-    for start, stop in track.bursts():
+    bursts = track.bursts()
+
+    def frame(work: tuple[tuple[int, int], np.random.Generator]) -> Frame:
+        (start, stop), of_noise = work
         history = simulate_echoes(
             points,
             track.part(start, stop),
             waveform,
             signal_to_noise_db=signal_to_noise_db,
-            random=random,
+            random=of_noise,
         )
-        images += frames(history, imaging)
+        (image,) = frames(history, imaging)
+        return image
+
+    images: list[Frame] = []
+    for image in in_order(frame, zip(bursts, random.spawn(len(bursts)), strict=True)):
+        images.append(image)
         progress("echoes and images", len(images), views)
     return images
 
@@ -191,11 +199,11 @@ def _row(
     rule: CarvingRule, agreement: Agreement, surface: Surface, target: Target
 ) -> tuple[str, ...]:
     lines = [
-        "none" if line is None else f"{line.length_m:.2f} ({_error_percent(line, feature):+.1f} %)"
+        "none" if line is None else f"{line.length_m:.2f}, {_error_percent(line, feature):+.1f} %"
         for feature, line in _measured(surface, target)
     ]
     return (
-        f"{rule} rule",
+        rule,
         f"{agreement.intersection_over_union:.3f}",
         f"{agreement.coverage:.3f}",
         *lines,
@@ -211,6 +219,6 @@ def _table(rows: list[tuple[str, ...]], target: Target) -> Table:
     truth = ("truth", "1.000", "1.000", *(f"{feature.length_m:.2f}" for feature in features))
     return Table(
         title="Hull from simulated echoes against the truth",
-        columns=("", "IoU", "coverage", *(f"{feature.name} (m)" for feature in features)),
+        columns=("rule", "IoU", "coverage", *(f"{feature.name} (m)" for feature in features)),
         rows=(*rows, truth),
     )

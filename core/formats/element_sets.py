@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from core.formats.files import reason
+
 
 def read_element_sets(path: Path) -> tuple[tuple[str, str, str], ...]:
     """Return the (line 1, line 2, name) triples of a file, the name line being optional.
@@ -13,8 +15,10 @@ def read_element_sets(path: Path) -> tuple[tuple[str, str, str], ...]:
     """
     try:
         text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise ValueError(f"{path} could not be read as a text of element sets: {error}.") from error
+    except OSError as error:
+        raise ValueError(f"{path} could not be read: {reason(error)}.") from error
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path} is no text file of element sets.") from error
     lines = [line.rstrip() for line in text.splitlines() if line.strip()]
     found = []
     for number, line in enumerate(lines[:-1]):

@@ -12,7 +12,6 @@ Layout, schema version 1 (every dataset carries its unit in the attribute `unit`
 A pass file may come from anywhere, so it is read as untrusted: `core.formats.untrusted_hdf5`.
 """
 
-import os
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,8 +19,9 @@ from typing import Any
 
 import h5py
 
-from core.formats.untrusted_hdf5 import opened, read_array, read_attribute
-from core.frame import Frame
+from core.formats.files import written_aside
+from core.formats.untrusted_hdf5 import opened, read_array, read_attribute, read_group
+from core.frame import LENGTHS, Frame
 from core.geometry.projection import Projection
 from core.geometry.track import LineOfSightTrack
 from core.radar.phase_history import PhaseHistory
@@ -31,7 +31,6 @@ SCHEMA_VERSION = 1
 
 _TRACK_REQUIRED = {"time_s": "s", "line_of_sight": "1", "line_of_sight_rate_per_s": "1/s"}
 _TRACK_OPTIONAL = {"range_m": "m", "azimuth_rad": "rad", "elevation_rad": "rad"}
-_FRAME_LENGTHS = ("row_spacing_m", "column_spacing_m", "row_resolution_m", "column_resolution_m")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -57,15 +56,8 @@ def write_pass(path: Path, recorded: RecordedPass) -> None:
     Raises:
         ValueError: the folder does not exist or cannot be written.
     """
-    aside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        with h5py.File(aside, "w", track_order=True) as file:
-            _write_content(file, recorded)
-        aside.replace(path)
-    except OSError as error:
-        raise ValueError(f"{path} could not be written: {error.strerror or error}.") from error
-    finally:
-        aside.unlink(missing_ok=True)
+    with written_aside(path) as aside, h5py.File(aside, "w", track_order=True) as file:
+        _write_content(file, recorded)
 
 
 def read_pass(path: Path) -> RecordedPass:
@@ -125,20 +117,26 @@ def _read_history(file: h5py.File) -> PhaseHistory | None:
         return None
     if "track" not in file:
         raise ValueError("the file holds echoes, but no track with their lines of sight.")
-    fields = {name: read_array(file, f"track/{name}") for name in _TRACK_REQUIRED}
-    known = [name for name in _TRACK_OPTIONAL if name in file["track"]]
+    group = read_group(file, "track")
+    fields = {name: read_array(group, name, unit) for name, unit in _TRACK_REQUIRED.items()}
+    known = {
+        name: read_array(group, name, unit)
+        for name, unit in _TRACK_OPTIONAL.items()
+        if name in group
+    }
     track = LineOfSightTrack(
         time_s=fields["time_s"],
         line_of_sight=fields["line_of_sight"],
         line_of_sight_rate_per_s=fields["line_of_sight_rate_per_s"],
-        epoch_utc=read_attribute(file["track"], "epoch_utc", str, default=""),
-        **{name: read_array(file, f"track/{name}") for name in known},
+        epoch_utc=read_attribute(group, "epoch_utc", str, default=""),
+        **known,
     )
+    echoes = read_group(file, "history")
     return PhaseHistory(
-        samples=read_array(file, "history/samples", complex_values=True),
-        frequency_hz=read_array(file, "history/frequency_hz"),
+        samples=read_array(echoes, "samples", "1", complex_values=True),
+        frequency_hz=read_array(echoes, "frequency_hz", "Hz"),
         track=track,
-        sensor=read_attribute(file["history"], "sensor", str, default="radar"),
+        sensor=read_attribute(echoes, "sensor", str, default="radar"),
     )
 
 
@@ -150,23 +148,26 @@ def _write_frame(group: h5py.Group, frame: Frame) -> None:
     group.attrs["time_s"] = frame.time_s
     group.attrs["sensor"] = frame.sensor
     group.attrs["label"] = frame.label
-    for name in _FRAME_LENGTHS:
+    for name in LENGTHS:
         value = getattr(frame, name)
         if value is not None:
             group.attrs[name] = value
 
 
 def _read_frames(file: h5py.File) -> Iterable[Frame]:
-    for name in sorted(file["frames"]) if "frames" in file else ():
-        group = file[f"frames/{name}"]
-        lengths = {key: read_attribute(group, key, float, default=None) for key in _FRAME_LENGTHS}
+    if "frames" not in file:
+        return
+    every = read_group(file, "frames")
+    for name in sorted(every):
+        group = read_group(every, name)
+        lengths = {key: read_attribute(group, key, float, default=None) for key in LENGTHS}
         sensor = read_attribute(group, "sensor", str)
         if sensor not in ("radar", "optical"):
             raise ValueError(f'frame {name} comes from a "{sensor}"; "radar" or "optical" wanted.')
         yield Frame(
-            amplitude=read_array(group, "amplitude"),
-            projection=Projection(matrix=read_array(group, "matrix")),
-            line_of_sight=read_array(group, "line_of_sight"),
+            amplitude=read_array(group, "amplitude", "1"),
+            projection=Projection(matrix=read_array(group, "matrix", "pixel/m")),
+            line_of_sight=read_array(group, "line_of_sight", "1"),
             time_s=read_attribute(group, "time_s", float),
             sensor=sensor,
             label=read_attribute(group, "label", str, default=""),

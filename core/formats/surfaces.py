@@ -1,10 +1,10 @@
 """Surfaces written for other programs."""
 
-import os
 from pathlib import Path
 
 import trimesh
 
+from core.formats.files import checked_output, written_aside
 from core.hull.surface import Surface
 
 SUFFIXES = (".glb", ".ply", ".stl")
@@ -18,18 +18,10 @@ def write_surface(path: Path, surface: Surface) -> None:
     Raises:
         ValueError: another ending, an empty surface, or a folder that cannot be written.
     """
-    suffix = path.suffix.lower()
-    if suffix not in SUFFIXES:
-        raise ValueError(f'A surface is written as {", ".join(SUFFIXES)}; got "{path.name}".')
+    checked_output(path, SUFFIXES)
     if surface.is_empty:
         raise ValueError("The hull is empty; there is no surface to write.")
     mesh = trimesh.Trimesh(surface.vertices_m, surface.faces, process=False)
-    content = mesh.export(file_type=suffix[1:])
-    aside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
+    content = mesh.export(file_type=path.suffix.lower()[1:])
+    with written_aside(path) as aside:
         aside.write_bytes(content)
-        aside.replace(path)
-    except OSError as error:
-        raise ValueError(f"{path} could not be written: {error.strerror}.") from error
-    finally:
-        aside.unlink(missing_ok=True)

@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-MAX_BYTES = 8 * 2**30
+MAX_BYTES = 4 * 2**30
 """Unpacked bytes that all datasets of a file may hold together."""
 
 MAX_OBJECTS = 100_000
@@ -49,11 +49,25 @@ def opened(path: Path) -> Iterator[h5py.File]:
             raise ValueError(f"{path} is damaged: {error}. Copy it again.") from error
 
 
-def read_array(group: h5py.Group, name: str, *, complex_values: bool = False) -> NDArray[Any]:
-    """Return a dataset of real (or complex) numbers.
+def read_group(parent: h5py.Group, name: str) -> h5py.Group:
+    """Return a group.
 
     Raises:
-        ValueError: it is missing or holds something else than such numbers.
+        ValueError: it is missing or something else.
+    """
+    item = parent.get(name)
+    if not isinstance(item, h5py.Group):
+        raise ValueError(f"the group {parent.name.rstrip('/')}/{name} is missing.")
+    return item
+
+
+def read_array(
+    group: h5py.Group, name: str, unit: str, *, complex_values: bool = False
+) -> NDArray[Any]:
+    """Return a dataset of real (or complex) numbers in the unit it must be in.
+
+    Raises:
+        ValueError: it is missing, holds something else than such numbers, or in another unit.
     """
     item = group.get(name)
     wanted = "complex numbers" if complex_values else "real numbers"
@@ -61,6 +75,9 @@ def read_array(group: h5py.Group, name: str, *, complex_values: bool = False) ->
         raise ValueError(f"the dataset {group.name.rstrip('/')}/{name} with {wanted} is missing.")
     if item.dtype.kind not in ("c" if complex_values else "fiu"):
         raise ValueError(f"the dataset {item.name} must hold {wanted}, it holds {item.dtype}.")
+    stated = item.attrs.get("unit")
+    if stated != unit:
+        raise ValueError(f'the dataset {item.name} must be in "{unit}", its unit is "{stated}".')
     return np.asarray(item[()])
 
 

@@ -6,8 +6,11 @@ import numpy as np
 
 from core.arrays import Floats, frozen
 
-MAX_VOXELS = 2**31
-"""Voxels that one in-memory volume may hold (2 GiB of one-byte votes)."""
+MAX_VOXELS = 2**30
+"""Voxels that one in-memory volume may hold: 1024³, 2 GiB of votes and 4 GiB while meshed."""
+
+BYTES_PER_VOXEL = 6
+"""Two of votes, and four of the mesher's copy."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -37,8 +40,9 @@ class VoxelGrid:
         count = int(np.prod(self.shape, dtype=np.int64))
         if count > MAX_VOXELS:
             raise ValueError(
-                f"A grid of {self.shape} holds {count:,} voxels; its votes would need "
-                f"{count / 2**30:.1f} GiB; at most {MAX_VOXELS:,} fit. Use a larger spacing."
+                f"A grid of {self.shape} holds {count:,} voxels; carving would need "
+                f"{BYTES_PER_VOXEL * count / 2**30:.0f} GiB; at most {MAX_VOXELS:,} fit. "
+                "Use a larger spacing."
             )
 
     @classmethod

@@ -16,6 +16,11 @@ from core.geometry.track import LineOfSightTrack
 KNOT_INTERVAL_S = 1.0
 """Orbits are computed once a second; a cubic spline between is good to 10⁻⁹ rad."""
 
+MAX_HEIGHT_M = 100e3
+
+FIRST_YEAR, LAST_YEAR = 1957, 2056
+"""Of element sets, whose epochs give two digits of the year, from Sputnik on."""
+
 _TIMESCALE = load.timescale(builtin=True)
 
 
@@ -39,6 +44,11 @@ class Station:
             raise ValueError(
                 "A station needs a latitude within ±90° and a longitude within ±360°; got "
                 f"{self.latitude_deg} and {self.longitude_deg}."
+            )
+        if not abs(self.height_m) <= MAX_HEIGHT_M:
+            raise ValueError(
+                "A station stands within ±100 km of the ellipsoid; got a height of "
+                f"{self.height_m} m."
             )
 
 
@@ -152,8 +162,14 @@ def passes(
     """Return the whole passes of a satellite over a station in a stretch of time.
 
     Raises:
-        ValueError: the orbit has decayed or the mask is not below the zenith.
+        ValueError: the orbit has decayed, the mask is not below the zenith, or the time is not
+            of the space age.
     """
+    if not FIRST_YEAR <= start_utc.year <= LAST_YEAR:
+        raise ValueError(
+            f"Passes are searched from {FIRST_YEAR} to {LAST_YEAR}, the years that element sets "
+            f"can name; got {start_utc.year}."
+        )
     if not 0 <= elevation_mask_rad < np.pi / 2:
         raise ValueError(
             "The elevation mask lies between the horizon and the zenith, 0° to below 90°; got "

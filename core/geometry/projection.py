@@ -34,6 +34,11 @@ class Projection:
                 "The projection maps the target onto a line: its row and column directions are "
                 "parallel or zero. Does the line of sight stand still in this frame?"
             )
+        if rows == 3 and not np.any(self.matrix[2, :3]):
+            raise ValueError(
+                "The third row of a 3 × 4 camera matrix gives the depth and must not be zero; "
+                "give a parallel camera as 2 × 4."
+            )
 
     @property
     def is_affine(self) -> bool:

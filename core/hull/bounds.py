@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import linprog
+from scipy.optimize import OptimizeResult, linprog
 
 from core.arrays import Floats
 from core.hull.view import View
@@ -27,6 +27,25 @@ def hull_bounds_m(views: Sequence[View]) -> tuple[Floats, Floats]:
     return reaches[0], reaches[1]
 
 
+def confined_widths_m(views: Sequence[View]) -> Floats:
+    """Return how wide the views let the hull be along x, y and z, (3,), infinite where open.
+
+    It is the width of the box of `hull_bounds_m`, axis by axis, without a grid's help.
+
+    Raises:
+        ValueError: an empty silhouette.
+    """
+    widths = np.empty(3)
+    if not views or any(view.silhouette.is_empty for view in views):
+        raise ValueError("Widths need at least one view, and a silhouette in each of them.")
+    half_spaces = np.concatenate([_half_spaces(view) for view in views])
+    for axis in range(3):
+        low, high = (_programme(half_spaces, axis, sign) for sign in (-1, 1))
+        both = low.status == 0 and high.status == 0
+        widths[axis] = -high.fun - low.fun if both else np.inf
+    return widths
+
+
 def _half_spaces(view: View) -> Floats:
     """Return rows (4 or 5, 4) with row · (x, y, z, 1) ≤ 0 inside the silhouette's rectangle."""
     matrix = view.projection.matrix
@@ -44,15 +63,7 @@ def _half_spaces(view: View) -> Floats:
 
 def _reach_m(half_spaces: Floats, axis: str, sign: int) -> float:
     """Return the least (sign −1) or greatest (+1) coordinate along an axis."""
-    objective = np.zeros(3)
-    objective["xyz".index(axis)] = -sign
-    solved = linprog(
-        objective,
-        A_ub=half_spaces[:, :3],
-        b_ub=-half_spaces[:, 3],
-        bounds=(None, None),
-        method="highs",
-    )
+    solved = _programme(half_spaces, "xyz".index(axis), sign)
     if solved.status == 3:
         raise ValueError(
             f"The views leave the target unbounded along {axis}; add a view from elsewhere."
@@ -63,3 +74,16 @@ def _reach_m(half_spaces: Floats, axis: str, sign: int) -> float:
             f"({solved.message.strip()}); check that the cameras belong to the pictures."
         )
     return float(-sign * solved.fun)
+
+
+def _programme(half_spaces: Floats, axis: int, sign: int) -> OptimizeResult:
+    """Minimise −sign times the coordinate along an axis inside all half-spaces."""
+    objective = np.zeros(3)
+    objective[axis] = -sign
+    return linprog(
+        objective,
+        A_ub=half_spaces[:, :3],
+        b_ub=-half_spaces[:, 3],
+        bounds=(None, None),
+        method="highs",
+    )

@@ -10,7 +10,6 @@ from typing import Literal
 
 import numpy as np
 import shapely
-from shapely.geometry import Polygon
 
 from core.arrays import Floats
 from core.hull.view import View
@@ -44,8 +43,8 @@ def filled_away_from_radar(silhouette: Silhouette) -> Silhouette:
         for ring in silhouette.rings
         if clockwise_area_px(ring) > 0
     ]
-    outers = [Polygon(ring) for ring in silhouette.rings if clockwise_area_px(ring) > 0]
-    union = shapely.union_all([*outers, *np.concatenate(swept)])
+    # A ring's inside lies behind its near edges, so their shadows cover it.
+    union = shapely.union_all(np.concatenate(swept))
     return Silhouette(
         rings=rings_of(union),
         image_shape=silhouette.image_shape,

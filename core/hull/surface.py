@@ -12,6 +12,9 @@ from core.hull.votes import VoteVolume
 __all__ = ["Surface", "hull_surface", "mask_surface"]
 
 
+EMPTY_SURFACE = Surface(vertices_m=np.empty((0, 3)), faces=np.empty((0, 3), dtype=np.int32))
+
+
 def hull_surface(volume: VoteVolume, threshold: int | None = None) -> Surface:
     """Return the exact surface of the hull with at least `threshold` votes.
 
@@ -40,11 +43,14 @@ def mask_surface(inside: NDArray[np.bool_], grid: VoxelGrid) -> Surface:
 
     Source: Lorensen and Cline, "Marching cubes", 1987, as in scikit-image.
     """
-    occupied = np.argwhere(inside)
-    if len(occupied) == 0:
-        return Surface(vertices_m=np.empty((0, 3)), faces=np.empty((0, 3), dtype=np.int32))
-    lower, upper = occupied.min(axis=0), occupied.max(axis=0) + 1
-    box = inside[tuple(slice(a, b) for a, b in zip(lower, upper, strict=True))]
+    if not inside.any():
+        return EMPTY_SURFACE
+    occupied = [
+        np.flatnonzero(inside.any(axis=tuple(other for other in range(3) if other != axis)))
+        for axis in range(3)
+    ]
+    lower = np.array([indices[0] for indices in occupied])
+    box = inside[tuple(slice(indices[0], indices[-1] + 1) for indices in occupied)]
     padded = np.pad(box, 1).astype(np.float32)
     # With "ascent" scikit-image winds the faces counter-clockwise as seen from outside.
     vertices, faces, _, _ = marching_cubes(padded, 0.5, gradient_direction="ascent")

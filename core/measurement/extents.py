@@ -8,10 +8,15 @@ import numpy as np
 from core.arrays import Floats, frozen
 from core.geometry.grid import VoxelGrid
 from core.geometry.projection import Projection
+from core.hull.bounds import confined_widths_m
 from core.hull.surface import Surface
+from core.hull.view import View
 
-UNOBSERVED_RMS_SINE = 0.2
-"""Views whose directions of blindness lie within about 12° (rms) of a line leave it unobserved."""
+UNOBSERVED_SINE = 0.2
+"""A direction is unobserved while every view is blind within about 12° of it."""
+
+CONFINED = 1.1
+"""How much wider than measured the views may let a hull be that the grid cuts."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -34,10 +39,20 @@ class Extent:
         object.__setattr__(self, "direction", frozen(self.direction, np.float64, (3,), "Direction"))
 
 
-def axis_extents(surface: Surface, grid: VoxelGrid) -> tuple[Extent, Extent, Extent]:
+def axis_extents(
+    surface: Surface, grid: VoxelGrid, views: Sequence[View]
+) -> tuple[Extent, Extent, Extent]:
     """Return the extents along x, y and z of the target frame.
 
-    An extent whose hull touches the first or last layer of the grid is not bounded by the views.
+    A hull that touches no side of the grid is bounded by its views alone. Of one that does, an
+    extent counts as bounded only along an axis where the views without the grid confine the hull
+    to within a tenth of it: a slanted hull that the grid cuts has the grid's extents on every
+    axis that its open direction leans to.
+
+    Args:
+        surface: of the hull.
+        grid: that it was carved on.
+        views: that carved it, as they voted.
 
     Raises:
         ValueError: the surface is empty.
@@ -45,15 +60,17 @@ def axis_extents(surface: Surface, grid: VoxelGrid) -> tuple[Extent, Extent, Ext
     if surface.is_empty:
         raise ValueError("The hull is empty, so it has no extents; lower the vote threshold.")
     lower, upper = surface.vertices_m.min(axis=0), surface.vertices_m.max(axis=0)
-    touches = (lower < grid.origin_m + 0.25 * grid.spacing_m) | (
-        upper > grid.upper_m - 0.25 * grid.spacing_m
+    widths = upper - lower
+    inside = np.all(lower > grid.origin_m + 0.25 * grid.spacing_m) and np.all(
+        upper < grid.upper_m - 0.25 * grid.spacing_m
     )
+    bounded = [True] * 3 if inside else (confined_widths_m(views) <= CONFINED * widths).tolist()
     x, y, z = (
         Extent(
             name=name,
-            value_m=float(upper[axis] - lower[axis]),
+            value_m=float(widths[axis]),
             direction=np.eye(3)[axis],
-            is_bounded=not bool(touches[axis]),
+            is_bounded=bounded[axis],
         )
         for axis, name in enumerate(("x along-track", "y cross-track", "z nadir"))
     )
@@ -64,11 +81,10 @@ def unobserved_direction(projections: Sequence[Projection]) -> Floats | None:
     """Return the (3,) unit direction that no image plane contains well, or None if all are seen.
 
     Every affine image is blind along its viewing direction; if all views are blind along nearly
-    the same line (the image planes of one pass nearly coincide), the hull is unbounded along it.
+    the same line (the image planes of one pass nearly coincide), the hull is open along it.
     """
     blind = np.array([projection.viewing_direction() for projection in projections])
-    concentration = blind.T @ blind / len(blind)
-    values, vectors = np.linalg.eigh(concentration)
-    rms_sine = float(np.sqrt(max(0.0, 1.0 - values[2])))
+    _, vectors = np.linalg.eigh(blind.T @ blind)
     direction: Floats = vectors[:, 2]
-    return direction if rms_sine < UNOBSERVED_RMS_SINE else None
+    sine = np.linalg.norm(np.cross(blind, direction), axis=1)
+    return direction if float(sine.max()) < UNOBSERVED_SINE else None

@@ -83,7 +83,7 @@ def polar_format_frame(
         target frame's origin at pixel (rows // 2, columns // 2).
 
     Raises:
-        ValueError: the image is wider than the pulses' unambiguous cross-range.
+        ValueError: the image is larger than the unambiguous range or cross-range.
 
     Source: Walker, "Range-Doppler imaging of rotating objects", 1980, for the polar raster;
     eqs. 4 to 6 for the axes.
@@ -101,7 +101,7 @@ def polar_format_frame(
     pulses = slice(interval.start, interval.stop)
     line_of_sight = track.line_of_sight[pulses]
     turn = accumulated_turn_rad(line_of_sight)
-    _check_unambiguous(turn, history.wavelength_m, settings)
+    _check_unambiguous(history, turn, settings)
     wavenumber = 4 * np.pi / SPEED_OF_LIGHT_M_PER_S * history.frequency_hz
     in_plane = line_of_sight @ axes.T
     weights = hamming(turn / turn[-1])[:, None] * hamming(np.linspace(0, 1, len(wavenumber)))
@@ -116,6 +116,7 @@ def polar_format_frame(
         settings.shape,
         eps=1e-5,
         isign=1,
+        nthreads=1,  # as in the echoes: the same input gives the same image
     )
     return Frame(
         amplitude=np.abs(image) / np.float32(weights.sum()),
@@ -133,12 +134,15 @@ def polar_format_frame(
     )
 
 
-def _check_unambiguous(turn: Floats, wavelength_m: float, settings: ImagingSettings) -> None:
-    step_rad = float(np.diff(turn).max())
-    unambiguous_m = wavelength_m / (2 * step_rad)
-    width_m = settings.shape[1] * settings.pixel_spacing_m
-    if unambiguous_m < 0.5 * width_m:
+def _check_unambiguous(history: PhaseHistory, turn: Floats, settings: ImagingSettings) -> None:
+    """Refuse images wider than what the samples tell apart, which would show every point twice."""
+    pixel_m = settings.pixel_spacing_m
+    height_m, width_m = (count * pixel_m for count in settings.shape)
+    range_m = SPEED_OF_LIGHT_M_PER_S / (2 * history.frequency_step_hz)
+    cross_range_m = history.wavelength_m / (2 * float(np.diff(turn).max()))
+    if range_m < height_m or cross_range_m < width_m:
         raise ValueError(
-            f"The pulses tell {unambiguous_m:.1f} m of cross-range apart, but the image is "
-            f"{width_m:.1f} m wide; raise the pulse repetition frequency or shrink the image."
+            f"The echoes tell {range_m:.1f} m of range and {cross_range_m:.1f} m of cross-range "
+            f"apart, but the image spans {height_m:.1f} × {width_m:.1f} m and would show ghosts; "
+            "use fewer or smaller pixels, or echoes with denser frequencies and pulses."
         )

@@ -6,6 +6,9 @@ import numpy as np
 
 from core.geometry.track import LineOfSightTrack, accumulated_turn_rad
 
+MIN_PULSES = 8
+"""Pulses that an interval must hold for its window to mean anything."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoherentInterval:
@@ -41,7 +44,7 @@ def divide(
         overlap: share of an interval that the next one uses again, 0 ≤ overlap < 1.
 
     Raises:
-        ValueError: no burst turns far enough for even one interval.
+        ValueError: no burst turns far enough for even one interval, or the pulses are too sparse.
 
     Source: eq. 10, whose azimuth resolution is λ / 2Δδ.
     """
@@ -53,6 +56,7 @@ def divide(
     wanted_rad = wavelength_m / (2 * cross_range_resolution_m)
     intervals: list[CoherentInterval] = []
     longest_rad = 0.0
+    _check_sampling(track, wanted_rad, wavelength_m)
     for start, stop in track.bursts():
         turn = accumulated_turn_rad(track.line_of_sight[start:stop])
         # N pulses integrate N intervals' worth of turn, half a step beyond the outer ones.
@@ -85,3 +89,15 @@ def divide(
             f"{np.rad2deg(longest_rad):.2f}° without a gap; ask for a coarser resolution."
         )
     return tuple(intervals)
+
+
+def _check_sampling(track: LineOfSightTrack, wanted_rad: float, wavelength_m: float) -> None:
+    steps = [np.diff(accumulated_turn_rad(track.line_of_sight[a:b])) for a, b in track.bursts()]
+    widest_rad = max((float(step.max()) for step in steps if len(step)), default=0.0)
+    if wanted_rad < MIN_PULSES * widest_rad:
+        coarsest_m = wavelength_m / (2 * MIN_PULSES * widest_rad)
+        raise ValueError(
+            f"The line of sight turns by up to {np.rad2deg(widest_rad):.3f}° from pulse to pulse, "
+            f"so {np.rad2deg(wanted_rad):.3f}° holds fewer than {MIN_PULSES} pulses; "
+            f"a resolution of {coarsest_m:.2g} m or finer can be had from these echoes."
+        )

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
-from trimesh.ray.ray_pyembree import RayMeshIntersector
 
 from core.arrays import Floats, frozen
 from core.radar.targets import Target
@@ -42,7 +41,8 @@ class Scatterers:
         """Return the echo power averaged over all aspects, in m².
 
         Source: Cauchy (1841): a convex body's projected area is on average a quarter of its
-        surface. Bodies that shade themselves return somewhat less.
+        surface. Bodies that shade themselves return less, and faces inside the body count here
+        though no ray reaches them, so that the true mean lies below.
         """
         return float(np.sum(np.abs(self.reflectivity) ** 2)) / 4
 
@@ -87,8 +87,8 @@ def lit_amplitudes(scatterers: Scatterers, line_of_sight: Floats) -> NDArray[np.
     facing = np.flatnonzero(cosine > 0)
     origins = scatterers.position_m[facing] + SURFACE_OFFSET_M * scatterers.normal[facing]
     toward_radar = np.broadcast_to(-line_of_sight, origins.shape)
-    # The intersector caches embree's scene with the mesh's own hash, so building it is free.
-    shaded = RayMeshIntersector(scatterers.mesh).intersects_any(origins, toward_radar)
+    # The mesh keeps its intersector, and that embree's scene.
+    shaded = scatterers.mesh.ray.intersects_any(origins, toward_radar)
     amplitude = np.zeros(len(cosine), dtype=np.complex128)
     lit = facing[~shaded]
     amplitude[lit] = scatterers.reflectivity[lit] * np.sqrt(cosine[lit])

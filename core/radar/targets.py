@@ -98,9 +98,8 @@ def tiangong_like(
         panel_tilt_rad: turn of the panels about y.
 
     Source: length 10.4 m and greatest diameter 3.35 m are the published figures (China Manned
-    Space Agency, as in Encyclopaedia Britannica, "Tiangong"). The span is the order of
-    the published drawings' (panels about twice as wide as the body is long); modules' shares,
-    chord and tilt are ours.
+    Space Agency, as in Encyclopaedia Britannica, "Tiangong"). No published figure
+    of the panels' span was found: 17 m, like the modules' shares, chord and tilt, is ours.
     """
     radius = diameter_m / 2
     ring_m, lab_m, cone_m = 0.06 * length_m, 0.48 * length_m, 0.10 * length_m

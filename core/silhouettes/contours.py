@@ -2,7 +2,9 @@
 
 import cv2
 import numpy as np
+import shapely
 from numpy.typing import NDArray
+from shapely.geometry import Polygon
 from skimage.measure import find_contours
 from skimage.morphology import remove_small_holes, remove_small_objects
 
@@ -36,19 +38,30 @@ def cleaned_mask(
     return cleaned
 
 
-def traced_rings(level: NDArray[np.float32], threshold: float) -> tuple[Floats, ...]:
+def traced_rings(
+    level: NDArray[np.float32], threshold: float, *, simplification_px: float = 0.0
+) -> tuple[Floats, ...]:
     """Trace where an image (rows, columns) crosses a level, between pixels.
 
     Diagonal neighbours above the level belong together (8-connected). Outer rings run clockwise
     as seen on the image, holes counter-clockwise; each is (vertices, 2) in (row, column).
 
-    Source: Lorensen and Cline's marching squares as in scikit-image's find_contours.
+    Args:
+        level: (rows, columns).
+        threshold: the level to trace.
+        simplification_px: vertices are left out where the ring moves by at most this.
+
+    Source: Lorensen and Cline's marching squares as in scikit-image's find_contours; Douglas and
+    Peucker, 1973, for the simplification, kept from crossing itself by GEOS.
     """
     outside = min(float(level.min()), threshold - 1)
     padded = np.pad(level.astype(np.float64), 1, constant_values=outside)
     rings = []
     for contour in find_contours(padded, threshold, fully_connected="high"):
-        ring = _without_repeats(contour[:-1] - 1)
+        closed = contour - 1
+        if simplification_px > 0 and len(closed) > 4:
+            closed = shapely.get_coordinates(Polygon(closed).simplify(simplification_px))
+        ring = _without_repeats(closed[:-1])
         if len(ring) >= 3 and clockwise_area_px(ring) != 0:
             rings.append(np.ascontiguousarray(ring))
     return tuple(rings)

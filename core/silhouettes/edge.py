@@ -20,6 +20,9 @@ NEIGHBOURHOOD_CELLS = 2.5
 """Standard deviation, in Rayleigh cells, of the neighbourhood whose brightness counts as inside:
 some twenty independent speckles, still narrower than a solar panel."""
 
+MARGIN_PX = 32
+"""What lies further than this from the target's pixels is not looked at."""
+
 Image = NDArray[np.float32]
 
 
@@ -35,45 +38,55 @@ def inward_distance_px(mask: NDArray[np.bool_], frame: Frame, detection: Detecti
         frame: the image with its resolution.
         detection: threshold and background of the same image.
     """
+    level: Image = np.full(mask.shape, -float(MARGIN_PX), dtype=np.float32)
+    if not mask.any():
+        return level
+    box = _box_with_margin(mask)
     cell_px = _rayleigh_cell_px(frame)
-    sampling = (1.0, 1.0) if cell_px is None else (1 / cell_px[0], 1 / cell_px[1])
-    mean_cell_px = 1.0 if cell_px is None else float(np.sqrt(cell_px[0] * cell_px[1]))
-    inside = distance_transform_edt(mask, sampling=sampling, return_indices=True)
-    depth, nearest = inside[0] * mean_cell_px, inside[1]
-    outside = distance_transform_edt(~mask, sampling=sampling) * mean_cell_px
-    # Pixels of the mask stand half a pixel from its edge.
-    signed = np.where(mask, depth - 0.5, 0.5 - outside)
+    detected = detection.mask[box]
+    signed, nearest = _signed_distance_px(mask[box], cell_px or (1.0, 1.0))
     if cell_px is not None:
-        displacement = edge_displacement_cells(frame, detection, cell_px) * mean_cell_px
-        signed -= displacement[nearest[0], nearest[1]]
-    level: Image = signed.astype(np.float32)
+        brightness = inner_power(frame.amplitude[box], detected, cell_px)
+        displacement = edge_displacement_cells(brightness, detection)
+        signed -= (displacement * np.sqrt(cell_px[0] * cell_px[1]))[nearest[0], nearest[1]]
+    level[box] = signed
     return level
 
 
-def edge_displacement_cells(
-    frame: Frame, detection: Detection, cell_px: tuple[float, float]
+def inner_power(
+    amplitude: NDArray[np.float32], detected: NDArray[np.bool_], cell_px: tuple[float, float]
 ) -> Floats:
-    """Return by how many Rayleigh cells the threshold is crossed outside an edge, per pixel.
+    """Return the mean power inside the target around every pixel, (rows, columns).
 
-    The brightness inside is the power-weighted mean power of the neighbourhood, in which the
-    dark skirt hardly counts; exponential speckle makes it twice the mean, so it is halved.
+    It is the power-weighted mean power of the neighbourhood's detected pixels, in which the dark
+    skirt hardly counts; exponential speckle makes it twice the mean, so it is halved.
 
     Args:
-        frame: the image.
-        detection: its threshold, background and detected pixels.
+        amplitude: (rows, columns).
+        detected: (rows, columns) pixels above the threshold.
         cell_px: Rayleigh cell in (rows, columns).
     """
-    power = frame.amplitude.astype(np.float64) ** 2
+    power = np.where(detected, amplitude, 0.0).astype(np.float64) ** 2
     width = [NEIGHBOURHOOD_CELLS * cell for cell in cell_px]
-    weighted = gaussian_filter(power * power * detection.mask, width)
-    total = gaussian_filter(power * detection.mask, width)
-    brightness = 0.5 * weighted / np.maximum(total, np.finfo(float).tiny)
+    total = np.maximum(gaussian_filter(power, width), np.finfo(float).tiny)
+    brightness: Floats = 0.5 * gaussian_filter(power * power, width) / total
+    return brightness
+
+
+def edge_displacement_cells(inner: Floats, detection: Detection) -> Floats:
+    """Return by how many Rayleigh cells the threshold is crossed outside an edge.
+
+    Args:
+        inner: mean power inside the target, any shape.
+        detection: its threshold and background.
+    """
     # Rayleigh amplitudes: mean power is 4/π of the squared mean amplitude.
     noise_power = 4 / np.pi * detection.background_mean**2
     skirt = max(detection.threshold**2 - noise_power, 0.0)
-    ratio = skirt / np.maximum(brightness, np.finfo(float).tiny)
+    # No edge is crossed further inside than at half its power.
+    ratio = skirt / np.maximum(inner, max(2 * skirt, np.finfo(float).tiny))
     distance, spread = edge_spread()
-    displacement: Floats = np.interp(-np.clip(ratio, spread[-1], 0.5), -spread, distance)
+    displacement: Floats = np.interp(-np.maximum(ratio, spread[-1]), -spread, distance)
     return displacement
 
 
@@ -105,3 +118,27 @@ def _rayleigh_cell_px(frame: Frame) -> tuple[float, float] | None:
         row_m / HALF_POWER_WIDTH_CELLS / row_step_m,
         column_m / HALF_POWER_WIDTH_CELLS / column_step_m,
     )
+
+
+def _box_with_margin(mask: NDArray[np.bool_]) -> tuple[slice, slice]:
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    return (
+        slice(max(int(rows[0]) - MARGIN_PX, 0), int(rows[-1]) + 1 + MARGIN_PX),
+        slice(max(int(columns[0]) - MARGIN_PX, 0), int(columns[-1]) + 1 + MARGIN_PX),
+    )
+
+
+def _signed_distance_px(
+    mask: NDArray[np.bool_], cell_px: tuple[float, float]
+) -> tuple[Floats, NDArray[np.intp]]:
+    """Return the distance into a mask, negative outside, and (2, …) the nearest outer pixel."""
+    sampling = (1 / cell_px[0], 1 / cell_px[1])
+    scale = np.sqrt(cell_px[0] * cell_px[1])
+    # What lies past the image's edge is not target, or one that fills the image had no edge.
+    framed = np.pad(mask, 1)
+    depth, nearest = distance_transform_edt(framed, sampling=sampling, return_indices=True)
+    outside = distance_transform_edt(~framed, sampling=sampling)
+    # Pixels of the mask stand half a pixel from its edge.
+    signed = np.where(framed, depth * scale - 0.5, 0.5 - outside * scale)[1:-1, 1:-1]
+    last = np.array(mask.shape).reshape(2, 1, 1) - 1
+    return signed, np.clip(nearest[:, 1:-1, 1:-1] - 1, 0, last)

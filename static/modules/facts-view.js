@@ -1,16 +1,13 @@
 // What is known of the frame and of the hull, in words and numbers.
 
-import { count, fixed, frames, vector, withUnit } from "./numbers.js";
+import { count, fixed, frames, timeText, vector, withUnit } from "./numbers.js";
 
 /** The rows that describe a frame. */
 export function frameRows(frame) {
   return [
-    ["Time", withUnit(frame.time_s, 1, "s")],
-    [
-      "Line of sight",
-      `elevation ${fixed(frame.elevation_deg, 1)}°, azimuth ${fixed(frame.azimuth_deg, 1)}°`,
-    ],
-    ["Direction x, y, z", vector(frame.line_of_sight)],
+    ["Time", timeText(frame.time_s, frame.label)],
+    ["Line of sight x, y, z", vector(frame.line_of_sight)],
+    ["θ, φ in the target frame", `${fixed(frame.theta_deg, 1)}°, ${fixed(frame.phi_deg, 1)}°`],
     [
       "Resolution",
       frame.row_resolution_m === null
@@ -77,6 +74,28 @@ function extentCell(extent) {
   const cell = element("td", fixed(extent.value_m, 2));
   cell.append(element("small", "\u202fm"));
   return cell;
+}
+
+/** Replace the rows of the principal lines' table: length and unit vector of each. */
+export function showLines(body, lines) {
+  body.replaceChildren(
+    ...lines.map((line) => {
+      const row = document.createElement("tr");
+      const name = element("th", line.name);
+      name.scope = "row";
+      name.append(element("small", vector(line.direction)));
+      const length = element("td", fixed(line.length_m, 2));
+      length.append(element("small", "\u202fm"));
+      row.append(name, length);
+      return row;
+    }),
+  );
+}
+
+/** Show what a person should know of a frame, as a sentence; nothing where there is nothing. */
+export function showNote(place, note) {
+  place.hidden = note === "";
+  place.textContent = note && `${note[0].toUpperCase()}${note.slice(1)}.`;
 }
 
 /** Name the direction that no frame constrains, if there is one. */

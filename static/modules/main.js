@@ -5,11 +5,13 @@ import {
   frameRows,
   hullRows,
   showExtents,
+  showLines,
+  showNote,
   showRows,
   showUnobserved,
 } from "./facts-view.js";
 import { FrameView } from "./frame-view.js";
-import { frames, withUnit } from "./numbers.js";
+import { frames, views, withUnit } from "./numbers.js";
 import { getJson, getLevels, keepLinked, order } from "./server.js";
 import { Transport } from "./transport.js";
 
@@ -54,6 +56,7 @@ function showState(next) {
   state = next;
   part("source-name").textContent = state.source.name;
   part("source-description").textContent = state.source.description;
+  part("source").title = state.source.description;
   document.title = `${state.source.name} – radarhull`;
   part("status").textContent = statusText();
   part("status").dataset.status = state.status;
@@ -90,23 +93,30 @@ function showHull() {
   const waiting = state.status === "failed" ? "No frame arrived." : "Preparing the first frame…";
   part("hull-body").hidden = hull === null || hull.is_empty;
   part("hull-empty").hidden = hull !== null && !hull.is_empty;
-  part("hull-empty").textContent = hull?.is_empty
-    ? "The hull is empty: no point of the target lies inside every silhouette."
-    : "The hull appears with the first frame.";
+  part("hull-empty").textContent = noHullText();
   part("hull-stamp").textContent = hull === null ? "" : afterFrames(hull.frames);
   part("space-empty").hidden = hull !== null;
   part("space-empty").textContent = waiting;
   part("space-stamp").textContent = spaceText();
   part("hull-body").dataset.frames = hull?.frames ?? 0;
+  part("hull-body").dataset.run = state.run;
   if (hull === null || hull.is_empty) return;
   showExtents(part("extents"), hull.extents);
+  showLines(part("lines"), hull.lines);
+  part("lines-empty").hidden = hull.lines.length > 0;
   showUnobserved(part("unobserved"), hull.unobserved);
   showRows(part("hull-facts"), hullRows(hull));
 }
 
+function noHullText() {
+  if (state.hull === null) return "The hull appears with the first frame.";
+  if (state.hull.views === 0) return "There is no hull: no frame so far shows the target.";
+  return "The hull is empty: no point of the target lies inside every silhouette.";
+}
+
 function spaceText() {
   if (state.hull === null) return "";
-  return `hull of ${frames(state.hull.frames)}, picture of frame ${state.shown}`;
+  return `hull of ${views(state.hull.views)}, picture of frame ${state.shown}`;
 }
 
 /** Fetch and show the frame that the state names; one at a time, always ending at the latest. */
@@ -140,9 +150,14 @@ async function fetchFrame(key) {
   frameView.setWindow(part("zoom-target").ariaPressed === "true" ? state.window_m : null);
   frameView.setFrame(frame, levels);
   part("frame-empty").hidden = true;
-  part("frame-stamp").textContent = `${number}, ${withUnit(frame.time_s, 1, "s")}`;
+  part("frame-stamp").textContent = frameStamp(frame);
+  showNote(part("frame-note"), frame.note);
   part("frame-canvas").dataset.frame = number;
   showRows(part("frame-facts"), frameRows(frame));
+}
+
+function frameStamp({ number, label, time_s: time }) {
+  return [number, label, withUnit(time, 1, "s")].filter(Boolean).join(", ");
 }
 
 function clearFrame() {
@@ -150,6 +165,7 @@ function clearFrame() {
   frameView.clear();
   part("frame-empty").hidden = false;
   part("frame-stamp").textContent = "";
+  showNote(part("frame-note"), "");
   part("frame-canvas").dataset.frame = 0;
   part("frame-facts").replaceChildren();
 }

@@ -29,6 +29,17 @@ export function frames(number) {
   return number === 1 ? "1 frame" : `${count(number)} frames`;
 }
 
+/** "1 view", "12 views". */
+export function views(number) {
+  return number === 1 ? "1 view" : `${count(number)} views`;
+}
+
+/** "213.4 s into pass 2", for the time begins again with each pass. */
+export function timeText(seconds, label) {
+  const time = withUnit(seconds, 1, "s");
+  return label.startsWith("pass ") ? `${time} into ${label}` : time;
+}
+
 /** Evenly spaced round values within [low, high], about `wanted` of them. */
 export function roundSteps(low, high, wanted) {
   const rough = (high - low) / wanted;

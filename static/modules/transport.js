@@ -1,6 +1,6 @@
 // Play, pause, step, speed, restart, the row of frames, and the keys for them.
 
-import { fixed, frames } from "./numbers.js";
+import { timeText, views } from "./numbers.js";
 
 const AS_FAST_AS_COMPUTED = "max";
 
@@ -114,13 +114,14 @@ function updateCell(cell, number, state) {
   cell.dataset.number = number;
   cell.role = "option";
   cell.ariaSelected = String(number === state.shown);
-  cell.title = `Frame ${number}, ${fixed(state.times_s[number - 1], 1)} s`;
+  const time = timeText(state.times_s[number - 1], state.labels[number - 1]);
+  cell.title = `Frame ${number}, ${time}`;
   cell.ariaLabel = cell.title;
 }
 
 function reelText(state) {
   if (state.shown === null) return "No frame yet";
-  const hull = `hull of all ${frames(state.frames)} so far`;
+  const hull = `hull of ${views(state.hull.views)} so far`;
   if (state.following) return `Showing the latest, frame ${state.shown}; ${hull}`;
   return `Showing frame ${state.shown}; ${hull}`;
 }

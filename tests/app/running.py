@@ -11,20 +11,22 @@ from core.reconstruction import ReconstructionSettings
 
 
 @contextmanager
-def running(source: Source, settings: ReconstructionSettings, playback: Playback) -> Iterator[str]:
+def running(
+    source: Source, settings: ReconstructionSettings, playback: Playback, *, port: int = 0
+) -> Iterator[str]:
     """Serve `source` and give the page's address, without the last slash."""
     ready = threading.Event()
     with (
-        listening_socket("127.0.0.1", 0) as listener,
+        listening_socket("127.0.0.1", port) as listener,
         workstation(source, settings, playback=playback) as app,
     ):
-        port = listener.getsockname()[1]
+        address = f"http://127.0.0.1:{listener.getsockname()[1]}"
         server = WorkstationServer(app, ready.set)
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
         thread.start()
         try:
             assert ready.wait(20), "the server did not start"
-            yield f"http://127.0.0.1:{port}"
+            yield address
         finally:
             server.should_exit = True
             thread.join(20)

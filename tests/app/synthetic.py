@@ -1,6 +1,7 @@
 """Frames without a radar: points of an asymmetric body, projected, blurred, in Rayleigh noise."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -72,6 +73,13 @@ def frame(
         column_resolution_m=0.26,
         label=f"synthetic view at {time_s:.0f} s",
     )
+
+
+def empty_frame(*, time_s: float = 0.0) -> Frame:
+    """Return a frame of noise only."""
+    random = np.random.default_rng(11)
+    shown = next(frames(1))
+    return replace(shown, amplitude=random.rayleigh(0.004, SHAPE), time_s=time_s, label="pass 2")
 
 
 def source(count: int = 12, *, one_pass: bool = False) -> Source:

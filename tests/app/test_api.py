@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 from httpx import Client
 
-from tests.app.synthetic import frames
+from app.facts import frame_facts
+from app.snapshot import record_of
+from core.reconstruction import reconstruct
+from tests.app.synthetic import SETTINGS, empty_frame, frames
 
 
 def test_state_describes_the_source_and_the_hull(client: Client) -> None:
@@ -21,7 +24,7 @@ def test_a_frame_tells_its_circumstances(client: Client) -> None:
     assert frame["shape"] == list(truth.shape)
     np.testing.assert_allclose(frame["line_of_sight"], truth.line_of_sight)
     np.testing.assert_allclose(frame["origin_px"], [80, 80])
-    elevation, azimuth = np.radians([frame["elevation_deg"], frame["azimuth_deg"]])
+    elevation, azimuth = np.radians([frame["theta_deg"], frame["phi_deg"]])
     k = [np.cos(elevation) * np.sin(azimuth), np.cos(elevation) * np.cos(azimuth)]
     np.testing.assert_allclose([*k, np.sin(elevation)], truth.line_of_sight, atol=1e-12)
     assert frame["silhouette"]["rings"]
@@ -35,6 +38,27 @@ def test_an_unbounded_extent_has_no_number(client: Client) -> None:
         assert (extent["value_m"] is None) == (not extent["is_bounded"])
     assert hull["volume_m3"] is None
     assert hull["unobserved"] is not None
+
+
+def test_principal_lines_come_with_the_hull_that_they_measure(client: Client) -> None:
+    first = client.get("/api/frames/1").json()["hull"]
+    assert (first["views"], first["lines"]) == (1, [])
+    hull = client.get("/api/state").json()["hull"]
+    assert (hull["frames"], hull["views"]) == (4, 4)
+    truth = list(reconstruct(frames(4), SETTINGS))[-1].lines
+    assert len(truth) == 3
+    for shown, line in zip(hull["lines"], truth, strict=True):
+        assert shown["name"] == line.name
+        assert shown["length_m"] == pytest.approx(line.length_m)
+        np.testing.assert_allclose(shown["direction"], line.direction)
+
+
+def test_a_frame_that_shows_no_target_says_so() -> None:
+    step = next(reconstruct([empty_frame()], SETTINGS))
+    facts = frame_facts(record_of(step))
+    assert facts["note"] == "frame 1 shows no target and does not vote"
+    assert facts["hull"]["views"] == 0
+    assert facts["hull"]["is_empty"]
 
 
 def test_an_image_gives_the_levels_back(client: Client) -> None:

@@ -135,3 +135,62 @@ def test_a_source_without_frames_is_a_failure_that_says_so(start, wait_for) -> N
     stream = start(Source(name="an empty pass", frames=tuple))
     wait_for(lambda: stream.snapshot.status == "failed")
     assert stream.snapshot.message.startswith("an empty pass holds no frames")
+
+
+def test_a_failure_during_a_restart_is_not_taken_for_the_end(start, wait_for) -> None:
+    asked, restarted = threading.Event(), threading.Event()
+
+    def breaks() -> Iterator[Frame]:
+        yield from frames(2)
+        asked.set()
+        restarted.wait(20)
+        raise ValueError("The echoes of frame 3 hold NaN.")
+
+    stream = start(Source(name="breaking", frames=breaks))
+    assert asked.wait(20)
+    stream.restart()
+    restarted.set()
+    wait_for(lambda: stream.snapshot.status in ("finished", "failed"))
+    assert stream.snapshot.run == 2
+    assert (stream.snapshot.status, stream.snapshot.message) == (
+        "failed",
+        "The echoes of frame 3 hold NaN.",
+    )
+    assert len(stream.snapshot.records) == 2
+
+
+def test_an_observer_that_fails_stops_nobody(start, wait_for, caplog) -> None:
+    def fails(snapshot: Snapshot) -> None:
+        raise RuntimeError("no such node in the scene")
+
+    stream = start(playing=False)
+    seen: list[Snapshot] = []
+    stream.observe(fails)
+    stream.observe(seen.append)
+    stream.play()
+    wait_for(lambda: stream.snapshot.status == "finished")
+    stream.restart()
+    wait_for(lambda: stream.snapshot.run == 2 and stream.snapshot.status == "finished")
+    wait_for(lambda: seen[-1] is stream.snapshot)
+    assert "no such node in the scene" in caplog.text
+
+
+def test_nobody_waits_for_an_observer_that_takes_its_time(start, wait_for) -> None:
+    entered, leave = threading.Event(), threading.Event()
+
+    def is_slow(snapshot: Snapshot) -> None:
+        if snapshot.records:
+            entered.set()
+            leave.wait(20)
+
+    stream = start(playing=False)
+    stream.observe(is_slow)
+    stream.step()
+    assert entered.wait(20)
+    asking = threading.Thread(target=lambda: (stream.pause(), stream.snapshot))
+    asking.start()
+    asking.join(5)
+    still_waits = asking.is_alive()
+    leave.set()
+    asking.join(20)
+    assert not still_waits

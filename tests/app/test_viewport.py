@@ -18,9 +18,12 @@ def record() -> Record:
     frame = next(frames(1))
     return Record(
         number=1,
+        voting=1,
         frame=frame,
         silhouette=extract_silhouette(frame),
+        note="",
         extents=(),
+        lines=(),
         unobserved=None,
         vertex_count=0,
         face_count=0,

@@ -23,6 +23,7 @@ class Visit:
 
     address: str
     page: Page
+    stop_server: Callable[[], None]
     requests: list[str] = field(default_factory=list)
     complaints: list[str] = field(default_factory=list)
 
@@ -47,11 +48,12 @@ def visit(browser: Browser) -> Iterator[Callable[..., Visit]]:
 
         def open_page(source: Source, *, playing: bool = False, viewport: bool = False) -> Visit:
             playback = Playback(speed_hz=None, is_playing=playing)
-            address = stack.enter_context(running(source, SETTINGS, playback))
+            server = stack.enter_context(ExitStack())
+            address = server.enter_context(running(source, SETTINGS, playback))
             page = browser.new_page(viewport={"width": 1440, "height": 900})
             stack.callback(page.close)
             page.set_default_timeout(PATIENCE_MS)
-            visit = Visit(address=address, page=page)
+            visit = Visit(address=address, page=page, stop_server=server.close)
             page.on("request", lambda request: visit.requests.append(request.url))
             page.on("websocket", lambda socket: visit.requests.append(socket.url))
             page.on("pageerror", lambda error: visit.complaints.append(str(error)))

@@ -1,10 +1,14 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
 from app.pictures import colour_index, colour_table
+from app.playback import Playback
 from app.source import Source
-from tests.app.synthetic import frames, source
+from tests.app.running import running
+from tests.app.synthetic import SETTINGS, empty_frame, frames, source
 
 READ_PIXELS = """(canvas) => {
   const { width, height } = canvas;
@@ -96,12 +100,76 @@ def test_the_cursor_reads_range_cross_range_and_level(visit) -> None:
     expect(page.locator("#readout")).to_have_text("Point at the picture to read it.")
 
 
+def test_principal_lines_are_measured_once_every_extent_is_bounded(visit) -> None:
+    page = visit(source(6)).page
+    step_to(page, 1)
+    expect(page.locator("#lines tr")).to_have_count(0)
+    expect(page.get_by_text("Measured once the views bound every extent.")).to_be_visible()
+    page.get_by_role("button", name="Play").click()
+    expect(page.locator("#hull-stamp")).to_have_text("after 6 frames")
+    hull = page.request.get(f"{page.url}api/state").json()["hull"]
+    shown = [row.inner_text().split() for row in page.locator("#lines tr").all()]
+    assert len(shown) == len(hull["lines"]) == 3
+    for words, line in zip(shown, hull["lines"], strict=True):
+        numbers = [*line["direction"], line["length_m"]]
+        written = " ".join(words).replace("−", "-").replace(",", "").split()
+        assert written[0] == line["name"]
+        assert [float(word) for word in written[1:5]] == pytest.approx(numbers, abs=0.006)
+        assert written[5] == "m"
+    expect(page.get_by_text("Measured once the views bound every extent.")).to_be_hidden()
+    panel = page.locator(".panel.hull")
+    assert panel.evaluate("(panel) => panel.scrollWidth <= panel.clientWidth")
+    assert panel.evaluate("(panel) => panel.scrollHeight <= panel.clientHeight")
+
+
+def test_a_frame_is_named_with_its_pass_and_its_angles_with_their_frame(visit) -> None:
+    def second_pass():
+        for each in frames(2):
+            yield replace(each, time_s=213.44, label="pass 2")
+
+    page = visit(Source(name="two passes", frames=second_pass)).page
+    step_to(page, 1)
+    expect(page.locator("#frame-stamp")).to_have_text("1, pass 2, 213.4 s")
+    facts = page.locator("#frame-facts")
+    expect(facts).to_contain_text("213.4 s into pass 2")
+    expect(facts).to_contain_text("θ, φ in the target frame")
+    expect(facts).not_to_contain_text("azimuth")
+    cell = page.locator("#cells").get_by_role("option").first
+    assert cell.get_attribute("title") == "Frame 1, 213.4\u202fs into pass 2"
+
+
+def test_a_frame_without_a_target_is_noted_and_does_not_vote(visit) -> None:
+    def with_an_empty_one():
+        first, second = frames(2)
+        yield from (first, empty_frame(), second)
+
+    page = visit(Source(name="a gap", frames=with_an_empty_one)).page
+    step_to(page, 1)
+    expect(page.locator("#frame-note")).to_be_hidden()
+    step_to(page, 2)
+    expect(page.locator("#frame-note")).to_have_text("Frame 2 shows no target and does not vote.")
+    expect(page.locator("#space-stamp")).to_have_text("hull of 1 view, picture of frame 2")
+    step_to(page, 3)
+    expect(page.locator("#frame-note")).to_be_hidden()
+    expect(page.locator("#reel-text")).to_have_text(
+        "Showing the latest, frame 3; hull of 2 views so far"
+    )
+
+
+def test_no_hull_is_claimed_before_a_frame_shows_the_target(visit) -> None:
+    page = visit(Source(name="nothing", frames=lambda: iter([empty_frame()]))).page
+    step_to(page, 1)
+    expect(page.locator("#hull-empty")).to_have_text(
+        "There is no hull: no frame so far shows the target."
+    )
+
+
 def test_an_earlier_frame_is_shown_while_the_hull_stays(visit) -> None:
     page = visit(source(4), playing=True).page
     expect(page.locator("#frame-canvas")).to_have_attribute("data-frame", "4")
     page.locator("#cells").get_by_role("option").nth(1).click()
     expect(page.locator("#frame-canvas")).to_have_attribute("data-frame", "2")
-    expect(page.locator("#space-stamp")).to_have_text("hull of 4 frames, picture of frame 2")
+    expect(page.locator("#space-stamp")).to_have_text("hull of 4 views, picture of frame 2")
     expect(page.locator("#hull-stamp")).to_have_text("after 4 frames")
     page.get_by_role("button", name="Follow the latest frame").click()
     expect(page.locator("#frame-canvas")).to_have_attribute("data-frame", "4")
@@ -125,9 +193,16 @@ def test_keys_play_step_and_leaf_through_frames(visit) -> None:
 def test_restart_clears_the_page_and_plays_again(visit) -> None:
     page = visit(source(3), playing=True).page
     expect(page.locator("#status")).to_have_text("All 3 frames received")
+    expect(page.locator("#hull-body")).to_have_attribute("data-run", "1")
     page.get_by_role("button", name="Restart").click()
+    expect(page.locator("#hull-body")).to_have_attribute("data-run", "2")
     expect(page.locator("#status")).to_have_text("All 3 frames received")
     expect(page.locator("#frame-canvas")).to_have_attribute("data-frame", "3")
+
+
+def test_the_description_is_given_whole_where_the_bar_cuts_it(visit) -> None:
+    page = visit(source(1)).page
+    expect(page.locator("#source")).to_have_attribute("title", source(1).description)
 
 
 def test_a_failure_is_one_sentence_on_the_page(visit) -> None:
@@ -143,10 +218,16 @@ def test_a_failure_is_one_sentence_on_the_page(visit) -> None:
 def test_a_lost_link_is_told_and_comes_back(visit) -> None:
     visited = visit(source(2), playing=True)
     page = visited.page
-    page.route_web_socket("**/api/live", lambda socket: socket.close())
-    page.reload()
+    expect(page.locator("#status")).to_have_text("All 2 frames received")
+    visited.stop_server()
     expect(page.get_by_role("alert")).to_contain_text("The connection to the server is lost")
     expect(page.locator("#link")).to_have_text("connection lost")
+    port = int(visited.address.rsplit(":", 1)[1])
+    with running(source(3), SETTINGS, Playback(speed_hz=None), port=port):
+        expect(page.locator("#link")).to_have_text("connected")
+        expect(page.get_by_role("alert")).to_be_hidden()
+        expect(page.locator("#status")).to_have_text("All 3 frames received")
+        expect(page.locator("#frame-canvas")).to_have_attribute("data-frame", "3")
 
 
 @pytest.mark.parametrize("path", ["api/live", "viewport"])

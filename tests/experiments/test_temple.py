@@ -25,4 +25,4 @@ def test_the_hull_has_the_temples_sides(shared_data):
     assert abs(figures["error of side z"].value) < 2.5
     assert figures["mean error, naive's largest part"].value > 6
     assert told[15] == ("silhouettes", 16, 16)
-    assert results.tables[0].rows[3][0] == "mean |error|"
+    assert [row[0] for row in results.tables[0].rows][:2] == ["true", "ours"]

@@ -179,3 +179,25 @@ def test_a_pass_without_anything_is_refused():
 def test_a_folder_that_does_not_exist_is_named(tmp_path):
     with pytest.raises(ValueError, match="could not be written"):
         write_pass(tmp_path / "absent" / "pass.h5", recorded())
+
+
+def test_another_unit_is_refused(written):
+    with h5py.File(written, "r+") as file:
+        file["frames/000000/matrix"].attrs["unit"] = "pixel/km"
+    with pytest.raises(ValueError, match='must be in "pixel/m", its unit is "pixel/km"'):
+        read_pass(written)
+
+
+def test_a_dataset_where_a_group_belongs_is_refused(written):
+    with h5py.File(written, "r+") as file:
+        file["frames/000009"] = [1.0]
+    with pytest.raises(ValueError, match="the group /frames/000009 is missing"):
+        read_pass(written)
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, np.nan])
+def test_impossible_spacings_are_refused(written, value):
+    with h5py.File(written, "r+") as file:
+        file["frames/000000"].attrs["column_spacing_m"] = value
+    with pytest.raises(ValueError, match="column_spacing_m must be positive metres"):
+        read_pass(written)

@@ -21,7 +21,7 @@ def test_another_reader_finds_the_same_size(tmp_path, suffix):
 
 def test_bad_endings_and_empty_hulls_are_refused(tmp_path):
     empty = Surface(vertices_m=np.empty((0, 3)), faces=np.empty((0, 3)))
-    with pytest.raises(ValueError, match=r"\.glb, \.ply, \.stl; got"):
+    with pytest.raises(ValueError, match=r"must end in \.glb, \.ply, \.stl; got"):
         write_surface(tmp_path / "hull.txt", empty)
     with pytest.raises(ValueError, match="no surface to write"):
         write_surface(tmp_path / "hull.glb", empty)

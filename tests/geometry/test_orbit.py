@@ -94,7 +94,7 @@ def test_doppler_is_the_finite_difference_of_range(demo_track):
 
 
 def test_the_satellite_flies_along_x_above_the_station(demo_track):
-    """Before culmination the station lies ahead (+x) and always below (+z): k points back and up."""
+    """At first the station lies ahead (+x) and always below (+z): k points back and up."""
     first, last = demo_track.line_of_sight[0], demo_track.line_of_sight[-1]
     assert first[0] < -0.8
     assert last[0] > 0.8
@@ -112,3 +112,21 @@ def test_a_wrong_checksum_is_refused():
 def test_a_short_line_is_refused():
     with pytest.raises(ValueError, match="has 69 characters"):
         satellite_from_tle("1 37820U", "2 37820")
+
+
+@pytest.mark.parametrize("height_m", [np.nan, np.inf, 1e12])
+def test_a_station_off_the_earth_is_refused(height_m):
+    with pytest.raises(ValueError, match="stands within ±100 km"):
+        Station(latitude_deg=39.9, longitude_deg=116.4, height_m=height_m)
+
+
+@pytest.mark.parametrize("year", [1, 1956, 2057, 9999])
+def test_passes_outside_the_space_age_are_refused(year):
+    with pytest.raises(ValueError, match=f"from 1957 to 2056, .*; got {year}"):
+        passes(
+            satellite_from_elements(DEMO_ORBIT),
+            BEIJING,
+            start_utc=datetime(year, 12, 31, tzinfo=UTC),
+            duration_s=2 * 86400.0,
+            elevation_mask_rad=0.2,
+        )

@@ -3,11 +3,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from core.geometry.projection import range_doppler_projection
 from core.hull.shadow import carving_view, filled_away_from_radar
 from core.hull.view import View
 from core.silhouettes.contours import traced_rings
 from core.silhouettes.silhouette import Silhouette
-from core.geometry.projection import range_doppler_projection
 
 
 def radar_projection(seed):

@@ -85,14 +85,14 @@ def half_power_width_px(level_db, at):
 
 def test_the_image_equals_the_direct_sum():
     random = np.random.default_rng(7)
-    history = one_view(5, random.uniform(-1, 1, (5, 3)), random.normal(size=5), pulses=32)
+    history = one_view(5, random.uniform(-1, 1, (5, 3)), random.normal(size=5), pulses=40)
     settings_ = ImagingSettings(shape=(32, 32), pixel_spacing_m=0.15)
     (frame,) = frames(history, settings_)
     track = history.track
     axes = frame.projection.matrix[:, :3] * 0.15
     wavenumber = 4 * np.pi / SPEED_OF_LIGHT_M_PER_S * history.frequency_hz
     in_plane = track.line_of_sight @ axes.T
-    weights = hamming(np.linspace(0, 1, 32))[:, None] * hamming(np.linspace(0, 1, 256))
+    weights = hamming(np.linspace(0, 1, 40))[:, None] * hamming(np.linspace(0, 1, 256))
     place = (np.arange(32) - 16) * 0.15
     vectors = in_plane[:, :, None] * wavenumber
     rows = np.exp(1j * np.multiply.outer(place, vectors[:, 0]))
@@ -123,7 +123,7 @@ def test_too_few_pulses_for_the_image_are_refused():
     history = PhaseHistory(
         samples=np.ones((20, 256)), frequency_hz=WAVEFORM.frequencies_hz(), track=track
     )
-    with pytest.raises(ValueError, match="raise the pulse repetition frequency"):
+    with pytest.raises(ValueError, match="denser frequencies and pulses"):
         list(frames(history, SETTINGS))
 
 
@@ -133,3 +133,21 @@ def test_echoes_with_nan_are_refused():
     broken[3, 4] = np.nan
     with pytest.raises(ValueError, match="1 of 65536 values are NaN or infinite"):
         PhaseHistory(samples=broken, frequency_hz=history.frequency_hz, track=history.track)
+
+
+@pytest.mark.parametrize(
+    ("waveform", "pulses"), [(Waveform(bandwidth_hz=2e9), 256), (WAVEFORM, 128)]
+)
+def test_images_wider_than_the_unambiguous_swath_are_refused(waveform, pulses):
+    track = random_views_track(
+        views=1,
+        turn_rad=WAVEFORM.wavelength_m / 0.3,
+        pulses_per_view=pulses,
+        pulse_repetition_frequency_hz=100.0,
+        random=np.random.default_rng(0),
+    )
+    history = PhaseHistory(
+        samples=np.ones((pulses, 256)), frequency_hz=waveform.frequencies_hz(), track=track
+    )
+    with pytest.raises(ValueError, match="would show ghosts"):
+        list(frames(history, SETTINGS))

@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -28,7 +30,7 @@ def test_every_interval_has_the_wanted_resolution(resolution_m, overlap):
     reached = [WAVELENGTH_M / (2 * interval.turn_rad) for interval in intervals]
     # The coarsest turn between two pulses is 1e-3 rad.
     assert reached == pytest.approx([resolution_m] * len(reached), rel=0.06)
-    assert all(a.start <= b.start for a, b in zip(intervals, intervals[1:], strict=False))
+    assert all(a.start <= b.start for a, b in pairwise(intervals))
     assert intervals[-1].stop == len(track)
     assert all(each.start <= each.middle < each.stop for each in intervals)
 
@@ -51,3 +53,8 @@ def test_bursts_made_for_one_interval_give_one_each():
 def test_too_little_turn_is_refused_with_both_angles():
     with pytest.raises(ValueError, match=r"turn by 3\.44°, but it turns by at most 0\.57°"):
         divide(sweep(0.01), wavelength_m=WAVELENGTH_M, cross_range_resolution_m=0.15)
+
+
+def test_pulses_too_sparse_for_an_interval_are_refused_with_what_can_be_had():
+    with pytest.raises(ValueError, match=r"holds fewer than 8 pulses; a resolution of .* or finer"):
+        divide(sweep(1.0, pulses=50), wavelength_m=WAVELENGTH_M, cross_range_resolution_m=1.0)

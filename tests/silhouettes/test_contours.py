@@ -1,6 +1,5 @@
 import numpy as np
 from hypothesis import given, settings
-from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from core.silhouettes.contours import cleaned_mask, traced_rings
