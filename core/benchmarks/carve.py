@@ -104,7 +104,9 @@ def run_carve(
     before = machine()
     for size, views in sizes:
         title = f"{size}³×{views}"
-        outcomes = _race(satellite_task(size, views, seed=seed), title, repeats, budget_s, progress)
+        outcomes = _race(
+            satellite_task(size, views, seed=seed, masks=True), title, repeats, budget_s, progress
+        )
         figures += _figures(title, outcomes, WANTED_RATIOS.get((size, views), {}))
         tables.append(_table(title, outcomes))
     # One plane in a hundred of the degenerate grid would cost as much as all of it.

@@ -33,7 +33,7 @@ class Task:
         views: affine ones.
         grid: where they vote.
         masks: (views, rows, columns) uint8, the silhouettes at pixel centres. Peers that look
-            votes up in masks get them for nothing.
+            votes up in masks get them for nothing. (0, 0, 0) where no peer runs.
         to_image: (views, 2, 4) from homogeneous voxel indices to (row, column).
     """
 
@@ -43,13 +43,15 @@ class Task:
     to_image: Floats
 
     @classmethod
-    def of(cls, views: Iterable[View], grid: VoxelGrid) -> "Task":
-        """Return the task of these views on this grid."""
+    def of(cls, views: Iterable[View], grid: VoxelGrid, *, masks: bool = False) -> "Task":
+        """Return the task of these views on this grid, with `masks` for peers that want them."""
         chosen = tuple(views)
         return cls(
             views=chosen,
             grid=grid,
-            masks=np.array([view.silhouette.mask() for view in chosen], dtype=np.uint8),
+            masks=np.array([view.silhouette.mask() for view in chosen], dtype=np.uint8)
+            if masks
+            else np.empty((0, 0, 0), dtype=np.uint8),
             to_image=np.array([view.projection.matrix @ grid.index_to_target() for view in chosen]),
         )
 
@@ -63,9 +65,12 @@ class Task:
         return np.arange(self.grid.shape[0])
 
 
-def satellite_task(size: int, views: int, *, seed: int = 1, segments: int = 64) -> Task:
+def satellite_task(
+    size: int, views: int, *, seed: int = 1, segments: int = 64, masks: bool = False
+) -> Task:
     """Return the test body under random views on a cubic grid of `size` voxels a side."""
-    return Task.of(satellite_views(views, seed=seed, segments=segments), cubic_grid(size))
+    chosen = satellite_views(views, seed=seed, segments=segments)
+    return Task.of(chosen, cubic_grid(size), masks=masks)
 
 
 def cubic_grid(size: int) -> VoxelGrid:
@@ -124,7 +129,7 @@ def degenerate_task(*, seed: int = 1, size: int = 33) -> Task:
     for row, column in directions:
         matrix = np.column_stack([np.stack([row, column]), np.full(2, 4.0)])
         views.append(_view(_integer_outline(random, size), matrix, 2 * size + 8))
-    return Task.of(views, grid)
+    return Task.of(views, grid, masks=True)
 
 
 def _integer_outline(random: np.random.Generator, size: int) -> shapely.Geometry:

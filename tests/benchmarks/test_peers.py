@@ -19,7 +19,7 @@ MASK_BOUND = 0.03
 def test_a_peers_votes_are_within_its_bound(peer: Peer) -> None:
     if peer.version is None:
         pytest.skip(f"{peer.name} is not installed")
-    task = satellite_task(40, 12)
+    task = satellite_task(40, 12, masks=True)
     planes = task.all_planes()[:: 1 if peer.whole_only else 8]
     found = peer.function()(task, planes)
     reference = reference_votes(task, planes)
