@@ -192,7 +192,8 @@ def _peer_contender(task: Task, peer: Peer, budget_s: float) -> Contender:
         while estimate > budget_s * stride and stride < count // 2:
             stride *= 2
     planes = every_nth_plane(count, stride)
-    votes(task, planes)  # compiles for these shapes
+    if not peer.hull_only:
+        votes(task, planes)  # compiles for these shapes
     return Contender(
         name=peer.name,
         run=lambda: votes(task, planes),
