@@ -1,10 +1,11 @@
 """The command `radarhull`."""
 
+import importlib.metadata
+import inspect
 import sys
 from collections.abc import Callable
 
-import tyro
-
+from app.arguments import parsed_call
 from app.commands.bench import bench
 from app.commands.experiment import experiment
 from app.commands.image import image
@@ -12,8 +13,11 @@ from app.commands.import_ import import_
 from app.commands.reconstruct import reconstruct
 from app.commands.serve import serve
 from app.commands.simulate import simulate
+from core.formats.files import reason
 
+PROGRAM = "radarhull"
 EXIT_BAD_INPUT = 2
+EXIT_STOPPED = 130
 
 _COMMANDS: dict[str, Callable[..., None]] = {
     "serve": serve,
@@ -25,28 +29,72 @@ _COMMANDS: dict[str, Callable[..., None]] = {
     "bench": bench,
 }
 
-_DESCRIPTION = """Visual hulls, lengths and attitude of satellites from multi-view radar images.
+_HELP = """usage: radarhull [COMMAND] [--help] [--version]
+
+Visual hulls, lengths and attitude of satellites from multi-view radar images.
 
 Without a command, radarhull serves the workstation on a built-in demo: three simulated passes
-of a space laboratory. Every command has --help."""
+of a space laboratory. "radarhull --open" also opens it in the browser.
+
+commands, each with --help:
+"""
 
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line; bad input ends with one line on standard error and exit code 2."""
-    words = list(sys.argv[1:] if arguments is None else arguments)
-    # Bare "radarhull" and "radarhull --open" serve the demo.
-    if not words or (words[0].startswith("-") and words[0] not in ("-h", "--help")):
-        words = ["serve", *words]
     try:
-        tyro.extras.subcommand_cli_from_dict(
-            _COMMANDS, prog="radarhull", description=_DESCRIPTION, args=words
-        )
-    except ValueError as error:
-        print(f"radarhull: {error}", file=sys.stderr)
-        raise SystemExit(EXIT_BAD_INPUT) from None
+        _run(list(sys.argv[1:] if arguments is None else arguments))
+    except (ValueError, MemoryError, OSError) as error:
+        _end(_sentence(error), EXIT_BAD_INPUT)
     except KeyboardInterrupt:
-        print("radarhull: stopped.", file=sys.stderr)
-        raise SystemExit(130) from None
+        _end("stopped.", EXIT_STOPPED)
+
+
+def _run(words: list[str]) -> None:
+    if words[:1] in (["-h"], ["--help"]):
+        print(_help())
+        return
+    if words[:1] == ["--version"]:
+        print(f"{PROGRAM} {_version()}")
+        return
+    # Bare "radarhull" and "radarhull --open" serve the demo.
+    if not words or words[0].startswith("-"):
+        words = ["serve", *words]
+    name, *rest = words
+    if name not in _COMMANDS:
+        raise ValueError(
+            f'there is no command "{name}", only {", ".join(_COMMANDS)}; see {PROGRAM} --help'
+        )
+    parsed_call(_COMMANDS[name], rest, program=f"{PROGRAM} {name}")()
+
+
+def _version() -> str:
+    try:
+        return importlib.metadata.version(PROGRAM)
+    except importlib.metadata.PackageNotFoundError:
+        return "(run from its sources, not installed)"
+
+
+def _help() -> str:
+    lines = [
+        f"  {name:12} {(inspect.getdoc(command) or '').splitlines()[0]}"
+        for name, command in _COMMANDS.items()
+    ]
+    return _HELP + "\n".join(lines)
+
+
+def _sentence(error: ValueError | MemoryError | OSError) -> str:
+    if isinstance(error, MemoryError):
+        return f"The memory does not suffice{f': {error}' if str(error) else ''}."
+    if isinstance(error, OSError):
+        place = f"{error.filename}: " if error.filename else ""
+        return f"{place}{reason(error)}."
+    return " ".join(str(error).split())
+
+
+def _end(sentence: str, code: int) -> None:
+    print(f"{PROGRAM}: {sentence}", file=sys.stderr)
+    raise SystemExit(code) from None
 
 
 if __name__ == "__main__":

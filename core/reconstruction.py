@@ -8,7 +8,7 @@ from core.frame import Frame
 from core.geometry.grid import VoxelGrid
 from core.hull.registration import centroid_registered
 from core.hull.shadow import CarvingRule, carving_view
-from core.hull.surface import EMPTY_SURFACE, Surface, hull_surface
+from core.hull.surface import EMPTY_SURFACE, Surface, hull_surface, mask_surface
 from core.hull.view import View
 from core.hull.votes import VoteVolume
 from core.measurement.extents import Extent, axis_extents, unobserved_direction
@@ -32,6 +32,8 @@ class ReconstructionSettings:
             threshold T of eq. 25 is the number of views less this; 0 is the paper's T = I.
         registers_centroids: whether frames are shifted to a common centroid (section III.D),
             for frames whose offsets are unknown.
+        exact_surface: whether the surface is snapped onto the outlines between the voxels, or
+            stands halfway between voxels, which needs no kernels compiled at the first start.
         extraction: how silhouettes are taken from frames.
     """
 
@@ -40,6 +42,7 @@ class ReconstructionSettings:
     rule: CarvingRule = "shadow"
     tolerated_misses: int = 0
     registers_centroids: bool = False
+    exact_surface: bool = True
     extraction: ExtractionSettings = field(default_factory=ExtractionSettings)
 
     def __post_init__(self) -> None:
@@ -122,7 +125,7 @@ def _step(
     settings: ReconstructionSettings,
 ) -> Step:
     threshold = max(1, len(views) - settings.tolerated_misses) if views else 0
-    surface = hull_surface(volume, threshold) if views else EMPTY_SURFACE
+    surface = _surface(volume, threshold, settings) if views else EMPTY_SURFACE
     extents = () if surface.is_empty else axis_extents(surface, volume.grid, views)
     is_closed = bool(extents) and all(extent.is_bounded for extent in extents)
     missing = f"frame {number} shows no target and does not vote" if silhouette.is_empty else ""
@@ -138,6 +141,12 @@ def _step(
         lines=principal_lines(surface, LINE_NAMES) if is_closed else (),
         unobserved=unobserved_direction([view.projection for view in views]) if views else None,
     )
+
+
+def _surface(volume: VoteVolume, threshold: int, settings: ReconstructionSettings) -> Surface:
+    if settings.exact_surface:
+        return hull_surface(volume, threshold)
+    return mask_surface(volume.hull(threshold), volume.grid)
 
 
 def _registered(frame: Frame, silhouette: Silhouette) -> Frame:

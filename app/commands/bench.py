@@ -9,7 +9,9 @@ from typing import Annotated, Literal
 
 import tyro
 
-from app.commands.console import Report, progress_bars, show_results
+from app.commands.console import Report, progress_bars
+from app.commands.options import JsonTo, OptionalInt, checked_seed
+from app.commands.outputs import checked_json, show_results
 from core.benchmarks import carve, edit, growth
 from core.experiments.results import Results
 
@@ -20,10 +22,10 @@ def bench(
     name: Annotated[Literal["carve", "edit", "growth", "surface"], tyro.conf.Positional],
     /,
     *,
-    sizes: tuple[str, ...] = (),
-    repeats: int | None = None,
-    json: str | None = None,
-    out: Path | None = None,
+    sizes: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NxVIEWS", help_behavior_hint="")] = (),
+    repeats: OptionalInt = None,
+    json: JsonTo = None,
+    out: Annotated[Path | None, tyro.conf.arg(metavar="FOLDER", help_behavior_hint="")] = None,
     seed: int = 1,
 ) -> None:
     """Measure the carving engine on a test satellite with exact outlines.
@@ -44,6 +46,8 @@ def bench(
         raise ValueError(f"At least 1 repeat is needed, got {repeats}.")
     if out is not None and name != "growth":
         raise ValueError(f"Only growth draws plots; leave --out away for {name}.")
+    checked_json(json)
+    checked_seed(seed)
     chosen = tuple(_size(text) for text in sizes)
     with progress_bars() as report:
         results = _run(name, chosen, repeats, out, seed, report)

@@ -1,10 +1,7 @@
-"""What commands show: progress on standard error, tables and JSON on standard output."""
+"""What commands show a person: progress on standard error, tables on standard output."""
 
-import json
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
 from rich.console import Console
 from rich.progress import (
@@ -17,7 +14,7 @@ from rich.progress import (
 )
 from rich.table import Table as RichTable
 
-from core.experiments.results import Results, Table
+from core.experiments.results import Table
 
 Report = Callable[[str, int, int], None]
 
@@ -40,32 +37,6 @@ def progress_bars() -> Iterator[Report]:
             progress.update(tasks[stage], completed=done, total=total)
 
         yield report
-
-
-def show_results(results: Results, json_to: str | None) -> None:
-    """Print an experiment's tables, or write its JSON to a file or, for "-", standard output."""
-    if json_to is not None:
-        text = json.dumps(results.to_json(), indent=2, ensure_ascii=False, allow_nan=False)
-        write_text(json_to, text)
-    if json_to == "-":
-        return
-    for table in (*results.tables, results.figures_table()):
-        show_table(table)
-
-
-def write_text(destination: str, text: str) -> None:
-    """Write a text to a file, or to standard output for "-".
-
-    Raises:
-        ValueError: the file cannot be written.
-    """
-    if destination == "-":
-        sys.stdout.write(text + "\n")
-        return
-    try:
-        Path(destination).write_text(text + "\n", encoding="utf-8")
-    except OSError as error:
-        raise ValueError(f"{destination} could not be written: {error.strerror}.") from error
 
 
 def show_table(table: Table) -> None:

@@ -1,25 +1,37 @@
 """`radarhull experiment`."""
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import tyro
 
-from app.commands.console import progress_bars, show_results
+from app.commands.console import Report, progress_bars
+from app.commands.options import (
+    JsonTo,
+    OptionalFloat,
+    OptionalInt,
+    checked_seed,
+    checked_snr_db,
+)
+from app.commands.outputs import checked_json, show_results
+from core.experiments.results import Results
 from core.experiments.temple import run_temple
 from core.experiments.wide import run_wide
 
+Experiment = Literal["wide", "temple"]
+
 
 def experiment(
-    name: Annotated[Literal["wide", "temple"], tyro.conf.Positional],
+    name: Annotated[Experiment, tyro.conf.Positional],
     /,
     *,
-    json: str | None = None,
-    data: Path | None = None,
-    views: int = 80,
-    spacing_m: float | None = None,
-    snr_db: float = 20.0,
-    seed: int = 1,
+    json: JsonTo = None,
+    data: Annotated[Path | None, tyro.conf.arg(metavar="FOLDER", help_behavior_hint="")] = None,
+    views: OptionalInt = None,
+    spacing_m: OptionalFloat = None,
+    snr_db: OptionalFloat = None,
+    seed: OptionalInt = None,
 ) -> None:
     """Run an experiment and print its table.
 
@@ -30,26 +42,41 @@ def experiment(
     Args:
         name: which experiment.
         json: write settings and figures as JSON to this file, or to standard output for "-".
-        data: folder of the photographs (temple).
-        views: number of views (wide).
-        spacing_m: voxel spacing in metres; the experiment's own by default.
-        snr_db: signal-to-noise ratio per pulse and frequency sample, decibels (wide).
-        seed: of the random generator (wide).
+        data: folder of the photographs (temple only).
+        views: number of views (wide only; 80 by default).
+        spacing_m: voxel spacing in metres; 0.15 (wide) or 0.0005 (temple) by default.
+        snr_db: signal-to-noise ratio per pulse and frequency sample (wide only; 20 dB by default).
+        seed: of the random generator (wide only; 1 by default).
     """
-    with progress_bars() as report:
-        if name == "wide":
-            results = run_wide(
-                views=views,
-                spacing_m=0.15 if spacing_m is None else spacing_m,
-                signal_to_noise_db=snr_db,
-                seed=seed,
-                progress=report,
+    checked_json(json)
+    if name == "wide":
+        _refuse_foreign(name, {"--data": data})
+        settings = {
+            "views": views,
+            "spacing_m": spacing_m,
+            "signal_to_noise_db": None if snr_db is None else checked_snr_db(snr_db),
+            "seed": None if seed is None else checked_seed(seed),
+        }
+        with progress_bars() as report:
+            results = _wide(settings, report)
+    else:
+        _refuse_foreign(name, {"--views": views, "--snr-db": snr_db, "--seed": seed})
+        if data is None:
+            raise ValueError(
+                "The temple experiment needs its photographs: --data FOLDER with "
+                "templeSR_par.txt and the PNG files of Middlebury's templeSparseRing."
             )
-        else:
-            if data is None:
-                raise ValueError(
-                    "The temple experiment needs its photographs: --data FOLDER with "
-                    "templeSR_par.txt and the PNG files of Middlebury's templeSparseRing."
-                )
+        with progress_bars() as report:
             results = run_temple(data, spacing_m=spacing_m, progress=report)
     show_results(results, json)
+
+
+def _wide(settings: Mapping[str, Any], report: Report) -> Results:
+    chosen = {name: value for name, value in settings.items() if value is not None}
+    return run_wide(**chosen, progress=report)
+
+
+def _refuse_foreign(name: Experiment, options: Mapping[str, object]) -> None:
+    given = [option for option, value in options.items() if value is not None]
+    if given:
+        raise ValueError(f"The {name} experiment has no use for {', '.join(given)}; leave it out.")

@@ -1,36 +1,41 @@
 """`radarhull image`."""
 
-from pathlib import Path
 from typing import Annotated, Literal
 
 import tyro
 
 from app.commands.console import progress_bars
+from app.commands.options import JsonTo, OptionalFile, OutputFile, PassFile
+from app.commands.outputs import checked_json, checked_pass, echo_facts, show_summary
+from core.formats.files import checked_output
 from core.formats.pass_file import RecordedPass, read_pass, write_pass
-from core.formats.pictures import write_picture
+from core.formats.pictures import SUFFIXES, write_picture
 from core.frame import Frame
 from core.radar.backprojection import backprojected_frame
 from core.radar.imaging import ImagingSettings, frame_count, frames
 from core.radar.phase_history import PhaseHistory
 
+Method = Literal["polar", "backprojection"]
+
 
 def image(
-    pass_file: Annotated[Path, tyro.conf.Positional],
-    out: Annotated[Path, tyro.conf.Positional],
+    pass_file: PassFile,
+    out: OutputFile,
     /,
     *,
     resolution_m: float = 0.15,
     overlap: float = 0.0,
     pixels: int = 512,
     pixel_spacing_m: float = 0.06,
-    method: Literal["polar", "backprojection"] = "polar",
-    picture: Path | None = None,
+    method: Annotated[Method, tyro.conf.arg(metavar="{polar,backprojection}")] = "polar",
+    picture: OptionalFile = None,
+    json: JsonTo = None,
 ) -> None:
-    """Image the echoes of a pass file: divide them into coherent intervals, form the frames.
+    """Divide the echoes of a pass file into coherent intervals and form their frames.
 
     Args:
         pass_file: pass file with echoes.
-        out: pass file to write, with the echoes and their frames.
+        out: pass file to write (.h5), with the echoes and their frames.
         resolution_m: wanted cross-range resolution, metres.
         overlap: share of an interval that the next one uses again, 0 to below 1.
         pixels: rows and columns of a frame.
@@ -39,7 +44,12 @@ def image(
             "backprojection" makes one image of all pulses on their slant plane with spherical
             wavefronts, for a near radar such as the measured Gotcha data.
         picture: also write the brightest frame as a PNG in dB, 60 dB deep.
+        json: write a summary as JSON to this file, or to standard output for "-".
     """
+    checked_pass(out)
+    checked_json(json)
+    if picture is not None:
+        checked_output(picture, SUFFIXES)
     recorded = read_pass(pass_file)
     if recorded.history is None:
         raise ValueError(f"{pass_file} holds frames, but no echoes to image.")
@@ -49,21 +59,34 @@ def image(
         shape=(pixels, pixels),
         pixel_spacing_m=pixel_spacing_m,
     )
-    if method == "polar":
-        made = _polar_frames(recorded.history, settings)
-    else:
-        made = [
-            backprojected_frame(
-                recorded.history,
-                shape=settings.shape,
-                row_spacing_m=pixel_spacing_m,
-                column_spacing_m=pixel_spacing_m,
-            )
-        ]
+    made = _frames(recorded.history, settings, method)
     write_pass(out, RecordedPass(history=recorded.history, frames=tuple(made)))
     if picture is not None:
         write_picture(picture, max(made, key=lambda frame: float(frame.amplitude.max())))
-    print(f"{out}: {len(made)} frames of {pixels} × {pixels} pixels of {pixel_spacing_m} m.")
+    show_summary(
+        f"{out}: {len(made)} frames of {pixels} × {pixels} pixels of {pixel_spacing_m} m.",
+        {
+            "file": str(out),
+            "method": method,
+            "frames": len(made),
+            "shape": [pixels, pixels],
+            "spacing_m": pixel_spacing_m,
+            **echo_facts(recorded.history),
+        },
+        json,
+    )
+
+
+def _frames(history: PhaseHistory, settings: ImagingSettings, method: Method) -> list[Frame]:
+    if method == "polar":
+        return _polar_frames(history, settings)
+    frame = backprojected_frame(
+        history,
+        shape=settings.shape,
+        row_spacing_m=settings.pixel_spacing_m,
+        column_spacing_m=settings.pixel_spacing_m,
+    )
+    return [frame]
 
 
 def _polar_frames(history: PhaseHistory, settings: ImagingSettings) -> list[Frame]:

@@ -5,16 +5,19 @@ from typing import Annotated
 
 import tyro
 
+from app.commands.options import JsonTo
+from app.commands.outputs import checked_json, checked_pass, echo_facts, show_summary
 from core.formats.gotcha import read_gotcha
 from core.formats.pass_file import RecordedPass, write_pass
 
 
 def import_(
-    files: Annotated[tuple[Path, ...], tyro.conf.Positional],
+    files: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="FILE...")],
     /,
     *,
-    out: Path,
+    out: Annotated[Path, tyro.conf.arg(metavar="OUT")],
     autofocus: bool = False,
+    json: JsonTo = None,
 ) -> None:
     """Turn measured phase histories into a pass file.
 
@@ -25,11 +28,16 @@ def import_(
         files: MATLAB files of one pass and polarisation.
         out: pass file to write (.h5).
         autofocus: apply the phase correction that the files bring along.
+        json: write a summary as JSON to this file, or to standard output for "-".
     """
+    checked_pass(out)
+    checked_json(json)
     history = read_gotcha(files, autofocus=autofocus)
     write_pass(out, RecordedPass(history=history))
     band_mhz = history.bandwidth_hz / 1e6
-    print(
+    show_summary(
         f"{out}: {len(history.track)} pulses × {len(history.frequency_hz)} frequencies, "
-        f"{band_mhz:.0f} MHz about {history.frequency_hz.mean() / 1e9:.3f} GHz."
+        f"{band_mhz:.0f} MHz about {history.frequency_hz.mean() / 1e9:.3f} GHz.",
+        {"file": str(out), "sources": [path.name for path in files], **echo_facts(history)},
+        json,
     )

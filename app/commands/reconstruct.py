@@ -1,31 +1,32 @@
 """`radarhull reconstruct`."""
 
-import json as json_text
-from collections.abc import Sequence
+import sys
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import tyro
 
-from app.commands.console import progress_bars, show_table, write_text
-from app.commands.serve import pass_source
+from app.commands.console import progress_bars, show_table
+from app.commands.options import DEFAULT_CARVING, CarvingOptions, JsonTo, OptionalFile
+from app.commands.outputs import STANDARD_OUTPUT, checked_json, write_json
+from app.source import Source
+from app.sources import MIN_VIEWS, pass_sources
+from core.arrays import Floats
 from core.experiments.results import Table
-from core.formats.surfaces import write_surface
+from core.formats.files import checked_output
+from core.formats.surfaces import SUFFIXES, write_surface
 from core.reconstruction import ReconstructionSettings, Step
 from core.reconstruction import reconstruct as reconstruct_frames
 
 
 def reconstruct(
-    pass_files: Annotated[tuple[Path, ...], tyro.conf.Positional],
+    pass_files: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="PASS...")],
     /,
     *,
-    out: Path | None = None,
-    json: str | None = None,
-    rule: Literal["shadow", "strict"] = "shadow",
-    tolerated_misses: int = 0,
-    register_centroids: bool = False,
-    spacing_m: float = 0.15,
-    side_m: float = 21.0,
+    out: OptionalFile = None,
+    json: JsonTo = None,
+    carving: CarvingOptions = DEFAULT_CARVING,
 ) -> None:
     """Carve the hull of one or more passes and print its extents.
 
@@ -33,46 +34,58 @@ def reconstruct(
         pass_files: pass files with frames or echoes; all vote together.
         out: write the hull's surface here (.glb, .ply or .stl), metres, target frame.
         json: write extents and settings as JSON to this file, or to standard output for "-".
-        rule: "shadow" carves nothing behind a frame's first return; "strict" is the paper's rule.
-        tolerated_misses: views that may miss a voxel of the hull; 0 lets every view carve.
-        register_centroids: shift every frame's silhouette to a common centroid (the paper's
-            III.D), for frames with unknown offsets.
-        spacing_m: voxel spacing, metres.
-        side_m: side of the cubic grid, metres.
+        carving: how the hull is carved.
     """
-    sources = [pass_source(path) for path in pass_files]
-    settings = ReconstructionSettings(
-        spacing_m=spacing_m,
-        side_m=side_m,
-        rule=rule,
-        tolerated_misses=tolerated_misses,
-        registers_centroids=register_centroids,
-    )
-    total = sum(source.expected_frames or 0 for source in sources)
-    every_frame = (frame for source in sources for frame in source.frames())
-    last: Step | None = None
-    with progress_bars() as report:
-        for last in reconstruct_frames(every_frame, settings):
-            report("frames", last.number, max(total, last.number))
-    if last is None or last.number < 2:
-        raise ValueError("A hull needs at least 2 views; the passes hold fewer frames.")
-    if last.surface.is_empty:
-        raise ValueError(
-            f"The hull of {last.number} views is empty: no voxel has {last.threshold} votes. "
-            "Allow --tolerated-misses, or check the frames' registration."
-        )
+    settings = carving.settings()
+    checked_json(json)
+    if out is not None:
+        checked_output(out, SUFFIXES)
+    last, notes = _carved(pass_sources(pass_files), settings)
+    for note in notes:
+        print(f"radarhull: note: {note}.", file=sys.stderr)
+    _check_hull(last)
     if out is not None:
         write_surface(out, last.surface)
     if json is not None:
-        write_text(json, json_text.dumps(_facts(last, settings, pass_files), indent=2))
-    if json != "-":
+        write_json(json, _facts(last, settings, pass_files, notes))
+    if json != STANDARD_OUTPUT:
         show_table(_extents_table(last))
 
 
-def _facts(step: Step, settings: ReconstructionSettings, files: Sequence[Path]) -> dict[str, Any]:
+def _carved(
+    sources: Sequence[Source], settings: ReconstructionSettings
+) -> tuple[Step, tuple[str, ...]]:
+    """Return the last step, and what every frame left to note."""
+    total = sum(source.expected_frames or 0 for source in sources)
+    every_frame = (frame for source in sources for frame in source.frames())
+    notes: list[str] = []
+    with progress_bars() as report:
+        for step in reconstruct_frames(every_frame, settings):
+            report("frames", step.number, max(total, step.number))
+            notes += [step.note] if step.note else []
+    return step, tuple(notes)
+
+
+def _check_hull(step: Step) -> None:
+    if step.voting < MIN_VIEWS:
+        raise ValueError(
+            f"A hull needs at least {MIN_VIEWS} views; {step.voting} of {step.number} frames show "
+            "a target."
+        )
+    if step.surface.is_empty:
+        raise ValueError(
+            f"The hull of {step.voting} views is empty: no voxel has {step.threshold} votes. "
+            "Allow --tolerated-misses, or check the frames' registration."
+        )
+
+
+def _facts(
+    step: Step, settings: ReconstructionSettings, files: Sequence[Path], notes: Sequence[str]
+) -> dict[str, Any]:
     return {
         "passes": [path.name for path in files],
-        "views": step.number,
+        "frames": step.number,
+        "views": step.voting,
         "threshold": step.threshold,
         "rule": settings.rule,
         "spacing_m": settings.spacing_m,
@@ -86,24 +99,37 @@ def _facts(step: Step, settings: ReconstructionSettings, files: Sequence[Path]) 
             }
             for extent in step.extents
         ],
+        "lines": [
+            {"name": line.name, "length_m": line.length_m, "direction": line.direction.tolist()}
+            for line in step.lines
+        ],
+        "notes": list(notes),
     }
 
 
 def _extents_table(step: Step) -> Table:
-    rows = [
-        (extent.name, f"{extent.value_m:.2f} m" if extent.is_bounded else "not bounded")
-        for extent in step.extents
-    ]
-    if _all_bounded(step):
-        rows.append(("volume", f"{step.surface.volume_m3():.1f} m³"))
-    if step.unobserved is not None:
-        x, y, z = step.unobserved
-        rows.append(("unobserved direction", f"({x:+.2f}, {y:+.2f}, {z:+.2f})"))
     return Table(
-        title=f"Hull of {step.number} views, {step.threshold} votes",
-        columns=("extent", "value"),
-        rows=tuple(rows),
+        title=f"Hull of {step.voting} views, {step.threshold} votes",
+        columns=("extent", "value", "attitude"),
+        rows=tuple(_rows(step)),
     )
+
+
+def _rows(step: Step) -> Iterator[tuple[str, str, str]]:
+    for extent in step.extents:
+        value = f"{extent.value_m:.2f} m" if extent.is_bounded else "not bounded"
+        yield extent.name, value, ""
+    for line in step.lines:
+        yield line.name, f"{line.length_m:.2f} m", _vector(line.direction)
+    if _all_bounded(step):
+        yield "volume", f"{step.surface.volume_m3():.1f} m³", ""
+    if step.unobserved is not None:
+        yield "unobserved direction", "", _vector(step.unobserved)
+
+
+def _vector(direction: Floats) -> str:
+    x, y, z = direction
+    return f"({x:+.2f}, {y:+.2f}, {z:+.2f})"
 
 
 def _all_bounded(step: Step) -> bool:

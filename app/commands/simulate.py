@@ -10,11 +10,22 @@ import tyro
 from skyfield.api import EarthSatellite
 
 from app.commands.console import progress_bars
+from app.commands.options import (
+    Gigahertz,
+    JsonTo,
+    OptionalFile,
+    OutputFile,
+    checked_seed,
+    checked_snr_db,
+)
+from app.commands.outputs import checked_json, checked_pass, echo_facts, show_summary
 from core.experiments.demo import DEMO_ORBIT, DEMO_STATION
 from core.formats.element_sets import read_element_sets
 from core.formats.meshes import read_mesh
 from core.formats.pass_file import RecordedPass, write_pass
+from core.formats.untrusted_hdf5 import MAX_BYTES
 from core.geometry.orbit import (
+    Pass,
     Station,
     line_of_sight_track,
     passes,
@@ -23,6 +34,7 @@ from core.geometry.orbit import (
 )
 from core.geometry.track import LineOfSightTrack
 from core.radar.echoes import simulate_echoes
+from core.radar.phase_history import PhaseHistory
 from core.radar.scatterers import surface_scatterers
 from core.radar.targets import Target, tiangong_like
 from core.radar.waveform import Waveform
@@ -36,7 +48,7 @@ SEARCH_DAYS = 2
 class Observation:
     """Which pass of which orbit over which station."""
 
-    tle: Path | None = None
+    tle: OptionalFile = None
     """File of two-line element sets; without one, Tiangong-1's orbit of March 2016."""
     tle_index: int = 0
     """Which set of the file, from 0."""
@@ -58,26 +70,42 @@ class Observation:
 class Radar:
     """What the radar sends."""
 
-    carrier_hz: float = 16.7e9
+    carrier_hz: Gigahertz = 16.7e9
     """Centre frequency, hertz."""
-    bandwidth_hz: float = 1.0e9
+    bandwidth_hz: Gigahertz = 1.0e9
     """Bandwidth, hertz."""
+    frequency_count: int = 256
+    """Frequency samples across the band; more of them tell a larger target apart in range."""
     prf_hz: float = 100.0
     """Pulses per second."""
     snr_db: float = 20.0
     """Mean echo power over noise power, per pulse and frequency sample, decibels."""
 
+    def waveform(self) -> Waveform:
+        """Return what these options mean.
+
+        Raises:
+            ValueError: a frequency that is not positive, or too few samples.
+        """
+        return Waveform(
+            carrier_frequency_hz=self.carrier_hz,
+            bandwidth_hz=self.bandwidth_hz,
+            pulse_repetition_frequency_hz=self.prf_hz,
+            frequency_count=self.frequency_count,
+        )
+
 
 def simulate(
-    out: Annotated[Path, tyro.conf.Positional],
+    out: OutputFile,
     /,
     *,
-    mesh: Path | None = None,
+    mesh: OptionalFile = None,
     mesh_unit_m: float = 1.0,
     observation: Annotated[Observation, tyro.conf.arg(name="")] = Observation(),
     radar: Annotated[Radar, tyro.conf.arg(name="")] = Radar(),
     scatterers: int = 60_000,
     seed: int = 1,
+    json: JsonTo = None,
 ) -> None:
     """Simulate the echoes of one pass of a self-shadowing target and write a pass file.
 
@@ -89,34 +117,44 @@ def simulate(
         radar: what the radar sends.
         scatterers: points on the target's surface.
         seed: of the random generator.
+        json: write a summary as JSON to this file, or to standard output for "-".
     """
-    random = np.random.default_rng(seed)
+    checked_pass(out)
+    checked_json(json)
+    checked_snr_db(radar.snr_db)
+    checked_seed(seed)
     target = tiangong_like() if mesh is None else _mesh_target(mesh, mesh_unit_m)
-    waveform = Waveform(
-        carrier_frequency_hz=radar.carrier_hz,
-        bandwidth_hz=radar.bandwidth_hz,
-        pulse_repetition_frequency_hz=radar.prf_hz,
+    track = pass_track(observation, radar.waveform())
+    history = _echoes(target, track, radar, scatterers=scatterers, seed=seed)
+    write_pass(out, RecordedPass(history=history))
+    show_summary(
+        f"{out}: {len(track)} pulses of {target.name} from {track.epoch_utc} on.",
+        {"file": str(out), "target": target.name, "seed": seed, **echo_facts(history)},
+        json,
     )
-    track = pass_track(observation, radar.prf_hz)
+
+
+def _echoes(
+    target: Target, track: LineOfSightTrack, radar: Radar, *, scatterers: int, seed: int
+) -> PhaseHistory:
+    random = np.random.default_rng(seed)
     points = surface_scatterers(target, count=scatterers, random=random)
     with progress_bars() as report:
-        history = simulate_echoes(
+        return simulate_echoes(
             points,
             track,
-            waveform,
+            radar.waveform(),
             signal_to_noise_db=radar.snr_db,
             random=random,
             progress=lambda done, total: report("pulses", done, total),
         )
-    write_pass(out, RecordedPass(history=history))
-    print(f"{out}: {len(track)} pulses of {target.name} from {track.epoch_utc} on.")
 
 
-def pass_track(observation: Observation, pulse_repetition_frequency_hz: float) -> LineOfSightTrack:
+def pass_track(observation: Observation, waveform: Waveform) -> LineOfSightTrack:
     """Return the line of sight along the chosen pass.
 
     Raises:
-        ValueError: no such element set, time or pass.
+        ValueError: no such element set, time or pass, or more echoes than a pass file may hold.
     """
     station = Station(
         latitude_deg=observation.latitude_deg,
@@ -134,13 +172,25 @@ def pass_track(observation: Observation, pulse_repetition_frequency_hz: float) -
     each = _chosen(
         found, observation.pass_index, "pass", f"the {SEARCH_DAYS} days from {observation.start}"
     )
+    _check_memory(each, waveform)
     return line_of_sight_track(
         satellite,
         station,
         start_utc=each.rise_utc,
         duration_s=each.duration_s,
-        pulse_repetition_frequency_hz=pulse_repetition_frequency_hz,
+        pulse_repetition_frequency_hz=waveform.pulse_repetition_frequency_hz,
     )
+
+
+def _check_memory(each: Pass, waveform: Waveform) -> None:
+    pulses = each.duration_s * waveform.pulse_repetition_frequency_hz
+    needed = pulses * waveform.frequency_count * np.dtype(np.complex64).itemsize
+    if needed > MAX_BYTES:
+        raise ValueError(
+            f"{pulses:.4g} pulses of {waveform.frequency_count} frequencies need "
+            f"{needed / 2**30:,.1f} GiB; a pass file holds at most {MAX_BYTES / 2**30:.0f} GiB. "
+            "Lower --prf-hz or --frequency-count, or raise --mask-deg."
+        )
 
 
 def _mesh_target(path: Path, unit_m: float) -> Target:
@@ -159,9 +209,9 @@ def _satellite(observation: Observation) -> EarthSatellite:
 def _utc(text: str) -> datetime:
     try:
         when = datetime.fromisoformat(text)
-    except ValueError as error:
+        return when.replace(tzinfo=UTC) if when.tzinfo is None else when.astimezone(UTC)
+    except (ValueError, OverflowError) as error:
         raise ValueError(f'A time reads like "2016-03-11T15:00:00" (UTC); got "{text}".') from error
-    return when.replace(tzinfo=UTC) if when.tzinfo is None else when.astimezone(UTC)
 
 
 def _chosen(items: tuple[Item, ...], index: int, noun: str, place: str) -> Item:

@@ -1,5 +1,10 @@
-"""Compiled checks of an outline's rings, and the step outward that makes "on" mean "inside"."""
+"""Checks of an outline's rings, and the step outward that makes "on" mean "inside".
 
+Only the search for edges that meet is compiled: it is the one part whose work grows faster than
+the outline, and every compiled line costs time at the very first start.
+"""
+
+import itertools
 from typing import Any
 
 import numba
@@ -12,80 +17,68 @@ from core.hull.threads import Compiled
 NEAREST_PX = 1e-6
 """Edges that come nearer to each other than this are taken to touch."""
 
+Indices = NDArray[np.int64]
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
-def prepared(points: Floats, offsets: NDArray[np.int64]) -> bool:  # pragma: no cover - compiled
+
+def prepared(points: Floats, offsets: Indices) -> bool:
     """Turn rings in place, outer ones clockwise, or return False if they cross, touch or repeat.
 
     Args:
         points: (points, 2) of closed rings after one another, first points repeated.
         offsets: (rings + 1,) where each starts.
     """
-    if _too_short(points, offsets) or _edges_meet(points, offsets):
+    rings = [points[a:b] for a, b in itertools.pairwise(offsets)]
+    if any(_is_too_short(ring) for ring in rings) or _edges_meet(points, offsets):
         return False
-    for ring in range(len(offsets) - 1):
-        first, last = offsets[ring], offsets[ring + 1]
-        surrounding = 0
-        for other in range(len(offsets) - 1):
-            if other != ring and _holds(points[offsets[other] : offsets[other + 1]], points[first]):
-                surrounding += 1
-        if (_area(points[first:last]) < 0) != (surrounding % 2 == 1):
-            points[first:last] = points[first:last][::-1].copy()
+    for ring in rings:
+        surrounding = sum(_holds(other, ring[0]) for other in rings if other is not ring)
+        if (_area(ring) < 0) != (surrounding % 2 == 1):
+            ring[:] = ring[::-1].copy()
     return True
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
-def _too_short(points: Floats, offsets: NDArray[np.int64]) -> bool:  # pragma: no cover - compiled
-    for ring in range(len(offsets) - 1):
-        for i in range(offsets[ring], offsets[ring + 1] - 1):
-            row, column = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
-            if row * row + column * column <= NEAREST_PX * NEAREST_PX:
-                return True
-    return False
+def _is_too_short(ring: Floats) -> bool:
+    return bool(np.any(np.sum(np.diff(ring, axis=0) ** 2, axis=1) <= NEAREST_PX**2))
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
-def _area(ring: Floats) -> float:  # pragma: no cover - compiled
+def _area(ring: Floats) -> float:
     """Return twice the area of a closed ring, positive if clockwise (rows down, columns right)."""
-    total = 0.0
-    for i in range(len(ring) - 1):
-        row, column = ring[i, 0] - ring[0, 0], ring[i, 1] - ring[0, 1]
-        total += column * (ring[i + 1, 0] - ring[0, 0]) - row * (ring[i + 1, 1] - ring[0, 1])
-    return total
+    row, column = (ring - ring[0]).T
+    return float(np.sum(column[:-1] * row[1:] - row[:-1] * column[1:]))
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
-def _holds(ring: Floats, point: Floats) -> bool:  # pragma: no cover - compiled
+def _holds(ring: Floats, point: Floats) -> bool:
     """Return whether a closed ring surrounds a point that is not on it."""
-    inside = False
-    for i in range(len(ring) - 1):
-        if (ring[i, 0] > point[0]) != (ring[i + 1, 0] > point[0]):
-            part = (point[0] - ring[i, 0]) / (ring[i + 1, 0] - ring[i, 0])
-            if ring[i, 1] + part * (ring[i + 1, 1] - ring[i, 1]) > point[1]:
-                inside = not inside
-    return inside
+    tail, head = ring[:-1], ring[1:]
+    crosses = (tail[:, 0] > point[0]) != (head[:, 0] > point[0])
+    tail, head = tail[crosses], head[crosses]
+    part = (point[0] - tail[:, 0]) / (head[:, 0] - tail[:, 0])
+    return int(np.sum(tail[:, 1] + part * (head[:, 1] - tail[:, 1]) > point[1])) % 2 == 1
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
-def _edges_meet(points: Floats, offsets: NDArray[np.int64]) -> bool:  # pragma: no cover - compiled
+def _edges_meet(points: Floats, offsets: Indices) -> bool:
     """Return whether any two edges cross or touch, neighbours at their common vertex excepted."""
     count = len(points) - 1
-    nexts = np.empty(count, dtype=np.int64)
-    low = np.full(count, np.inf)
-    for ring in range(len(offsets) - 1):
-        last = offsets[ring + 1] - 2
-        for i in range(offsets[ring], last + 1):
-            nexts[i] = i + 1 if i < last else offsets[ring]
-            low[i] = min(points[i, 0], points[i + 1, 0]) - NEAREST_PX
-    order = np.argsort(low)
-    for rank in range(count):
+    nexts = np.arange(1, count + 1)
+    nexts[offsets[1:] - 2] = offsets[:-1]
+    # Between one ring's last point and the next one's first there is no edge.
+    edges = np.delete(np.arange(count), offsets[1:-1] - 1)
+    low = np.minimum(points[:-1, 0], points[1:, 0]) - NEAREST_PX
+    order = edges[np.argsort(low[edges])]
+    return bool(_any_meet(points, nexts, low, order))
+
+
+@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+def _any_meet(
+    points: Floats, nexts: Indices, low: Floats, order: Indices
+) -> bool:  # pragma: no cover - compiled
+    """Search edges in the order of their least rows, each against those that begin within it."""
+    for rank in range(len(order)):
         i = order[rank]
-        if low[i] == np.inf:
-            break
         if _folds_back(points, i, nexts[i]):
             return True
         high = max(points[i, 0], points[i + 1, 0])
-        for later in range(rank + 1, count):
+        for later in range(rank + 1, len(order)):
             j = order[later]
             if low[j] > high:
                 break
@@ -122,52 +115,40 @@ def _apart(points: Floats, i: int, j: int) -> Any:  # pragma: no cover - compile
     return (one > limit and two > limit) or (one < -limit and two < -limit)
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
-def outset(
-    points: Floats, offsets: NDArray[np.int64], distance: float
-) -> tuple[Floats, NDArray[np.int64]]:  # pragma: no cover - compiled
+def outset(points: Floats, offsets: Indices, distance: float) -> tuple[Floats, Indices]:
     """Return closed, rightly turned rings with every edge moved outward, mitred at its vertices.
 
     Sharp tips are cut square instead, where a mitre would reach far beyond them.
+
+    Args:
+        points: (points, 2) of closed rings after one another, first points repeated.
+        offsets: (rings + 1,) where each starts.
+        distance: how far, in pixels.
+
+    Returns:
+        The same form: points and offsets.
     """
-    moved, starts = np.empty((2 * len(points), 2)), np.zeros_like(offsets)
-    filled = 0
-    for ring in range(len(offsets) - 1):
-        first, last = offsets[ring], offsets[ring + 1] - 1
-        for i in range(first, last):
-            before = points[i - 1] if i > first else points[last - 1]
-            filled += _move_vertex(before, points[i], points[i + 1], distance, moved[filled:])
-        moved[filled] = moved[starts[ring]]
-        filled += 1
-        starts[ring + 1] = filled
-    return moved[:filled].copy(), starts
+    moved = [_outset_ring(points[a : b - 1], distance) for a, b in itertools.pairwise(offsets)]
+    starts = np.zeros_like(offsets)
+    starts[1:] = np.cumsum([len(ring) for ring in moved])
+    return np.concatenate(moved), starts
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
-def _move_vertex(
-    before: Floats, vertex: Floats, after: Floats, distance: float, moved: Floats
-) -> int:  # pragma: no cover - compiled
-    """Write the one or two points that a vertex becomes, and return how many."""
-    r1, c1, length1 = _direction(before, vertex)
-    r2, c2, length2 = _direction(vertex, after)
-    if r1 * c2 - c1 * r2 < 0 and r1 * r2 + c1 * c2 < -0.5:
-        moved[0, 0] = vertex[0] + distance * (r1 - c1)
-        moved[0, 1] = vertex[1] + distance * (c1 + r1)
-        moved[1, 0] = vertex[0] - distance * (r2 + c2)
-        moved[1, 1] = vertex[1] + distance * (r2 - c2)
-        return 2
-    nr, nc = -(c1 + c2), r1 + r2
-    size = np.sqrt(nr * nr + nc * nc)
-    reach = min(2 * distance / size, 0.5 * min(length1, length2)) / size
-    moved[0, 0] = vertex[0] + reach * nr
-    moved[0, 1] = vertex[1] + reach * nc
-    return 1
-
-
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
-def _direction(
-    tail: Floats, head: Floats
-) -> tuple[float, float, float]:  # pragma: no cover - compiled
-    r, c = head[0] - tail[0], head[1] - tail[1]
-    length = np.sqrt(r * r + c * c)
-    return r / length, c / length, length
+def _outset_ring(ring: Floats, distance: float) -> Floats:
+    """Return one ring (vertices, 2) moved outward and closed by its first point."""
+    after = np.roll(ring, -1, axis=0) - ring
+    length = np.sqrt(after[:, 0] * after[:, 0] + after[:, 1] * after[:, 1])
+    r2, c2 = (after / length[:, None]).T
+    r1, c1 = np.roll(r2, 1), np.roll(c2, 1)
+    is_tip = (r1 * c2 - c1 * r2 < 0) & (r1 * r2 + c1 * c2 < -0.5)
+    normal = np.column_stack([-(c1 + c2), r1 + r2])
+    size = np.where(is_tip, 1.0, np.sqrt(normal[:, 0] * normal[:, 0] + normal[:, 1] * normal[:, 1]))
+    shortest = 0.5 * np.minimum(np.roll(length, 1), length)
+    reach = np.minimum(2 * distance / size, shortest) / size
+    first = ring + reach[:, None] * normal
+    first[is_tip] = (ring + distance * np.column_stack([r1 - c1, c1 + r1]))[is_tip]
+    second = ring + distance * np.column_stack([-(r2 + c2), r2 - c2])
+    both = np.stack([first, second], axis=1).reshape(-1, 2)
+    kept = np.column_stack([np.ones(len(ring), dtype=bool), is_tip]).ravel()
+    closed: Floats = both[kept]
+    return np.concatenate([closed, closed[:1]])

@@ -127,7 +127,7 @@ def _range_profiles(history: PhaseHistory) -> tuple[NDArray[np.complex64], float
 
 
 @numba.njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
-def _accumulate(  # noqa: PLR0917 - compiled functions take their arguments by position
+def _accumulate(
     profiles: NDArray[np.complex64],
     cell_m: float,
     wavenumber: float,

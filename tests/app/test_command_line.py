@@ -1,5 +1,8 @@
+import errno
 import json
+import re
 import socket
+from dataclasses import replace
 
 import h5py
 import numpy as np
@@ -7,7 +10,8 @@ import pytest
 import trimesh
 
 from app.command_line import main
-from core.formats.pass_file import read_pass
+from core.formats.pass_file import RecordedPass, read_pass, write_pass
+from core.radar.intervals import divide
 
 
 def run(capsys, *words):
@@ -35,27 +39,110 @@ def echoes(tmp_path_factory):
     return path
 
 
-@pytest.mark.parametrize(
-    "command", ["", "serve", "simulate", "import", "image", "reconstruct", "experiment"]
-)
-def test_every_command_has_help(capsys, command):
+@pytest.fixture(scope="module")
+def one_frame(echoes, tmp_path_factory):
+    """The echoes' first coherent interval alone, and the pass file of its one frame."""
+    folder = tmp_path_factory.mktemp("one")
+    history, frames = read_pass(echoes).history, folder / "frames.h5"
+    alone = folder / "echoes.h5"
+    write_pass(alone, RecordedPass(history=history.part(0, next_interval(history))))
+    main(["image", str(alone), str(frames)])
+    return alone, frames
+
+
+def next_interval(history):
+    """Where the first coherent interval ends, with a few pulses to spare."""
+    (first, *_) = divide(
+        history.track, wavelength_m=history.wavelength_m, cross_range_resolution_m=0.15
+    )
+    return first.stop + 3
+
+
+COMMANDS = ("serve", "simulate", "import", "image", "reconstruct", "experiment")
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_readable_help(capsys, command):
     with pytest.raises(SystemExit) as ended:
-        main([*command.split(), "--help"])
+        main([command, "--help"])
     assert ended.value.code == 0
-    assert "--help" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert "--help" in out
+    assert "None" not in out
+    assert "000000" not in out
+
+
+def test_the_help_names_every_command_and_requires_none(capsys):
+    out = run(capsys, "--help")
+    assert all(command in out for command in COMMANDS)
+    assert "required" not in out
+
+
+def test_the_version_is_told(capsys):
+    assert run(capsys, "--version").startswith("radarhull ")
+
+
+@pytest.mark.parametrize(
+    ("words", "wanted"),
+    [
+        ("fly", 'there is no command "fly", only serve, .*; see radarhull --help'),
+        ("simulate", r"missing: OUT .*; see radarhull simulate --help"),
+        ("serve --rule loose", r"invalid choice 'loose' .*\('shadow', 'strict'\); see"),
+    ],
+)
+def test_what_is_not_understood_is_said_in_one_line(capsys, words, wanted):
+    assert re.search(wanted, refused(capsys, *words.split()))
+
+
+@pytest.mark.parametrize(
+    ("words", "wanted"),
+    [
+        ("--start 9999-12-31", "from 1957 to 2056"),
+        ("--start 0001-01-01T00:00+05:00", "A time reads like"),
+        ("--prf-hz 1e9", r"pulses of 256 frequencies need [\d,.]+ GiB; .* at most \d+ GiB"),
+        ("--frequency-count 1000000000", "frequencies need .* GiB"),
+        ("--height-m nan", "stands within ±100 km"),
+        ("--snr-db nan", "--snr-db wants decibels"),
+        ("--snr-db -100000", "--snr-db wants decibels"),
+        ("--seed -1", "--seed wants a whole number from 0 on"),
+        ("--json /nonexistent/facts.json", "no folder /nonexistent"),
+    ],
+)
+def test_options_that_cannot_work_are_refused_before_the_work(capsys, tmp_path, words, wanted):
+    assert re.search(wanted, refused(capsys, "simulate", tmp_path / "out.h5", *words.split()))
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("error", "wanted"),
+    [
+        (MemoryError("Unable to allocate 2.62 TiB"), "memory does not suffice: Unable to allo"),
+        (OSError(errno.ENOSPC, "long text"), "No space left on device"),
+        (PermissionError(errno.EACCES, "denied", "secret.h5"), "secret.h5: Permission denied"),
+    ],
+)
+def test_what_the_system_refuses_is_one_line(capsys, monkeypatch, error, wanted):
+    def broken(*_):
+        raise error
+
+    monkeypatch.setattr("app.command_line._run", broken)
+    assert wanted in refused(capsys, "serve")
 
 
 def test_echoes_become_frames_become_a_hull(capsys, echoes, tmp_path):
     framed, hull = tmp_path / "frames.h5", tmp_path / "hull.glb"
     picture = tmp_path / "frame.png"
-    assert "512 × 512 pixels" in run(capsys, "image", echoes, framed, "--picture", picture)
+    options = ("--picture", picture, "--json", "-")
+    made = json.loads(run(capsys, "image", echoes, framed, *options))
+    assert (made["shape"], made["spacing_m"], made["frequencies"]) == ([512, 512], 0.06, 256)
     assert picture.stat().st_size > 10_000
     count = len(read_pass(framed).frames)
-    assert count >= 4
+    assert made["frames"] == count >= 4
     # One short pass bounds no extent, so the grid must: what counts is that all agree.
     out = run(capsys, "reconstruct", framed, "--out", hull, "--json", "-", "--spacing-m", 0.3)
     facts = json.loads(out)
-    assert facts["views"] == count == facts["threshold"]
+    assert facts["frames"] == facts["views"] == count == facts["threshold"]
+    assert (facts["lines"], facts["notes"]) == ([], [])
     assert facts["unobserved_direction"] is not None
     assert facts["volume_m3"] is None
     extents = trimesh.load(hull, force="mesh").extents
@@ -68,6 +155,8 @@ def test_measured_echoes_are_imported_and_focused(capsys, shared_data, tmp_path)
     files = sorted((shared_data("gotcha")).glob("*.mat"))
     passed, framed = tmp_path / "gotcha.h5", tmp_path / "focused.h5"
     assert "469 pulses × 424 frequencies" in run(capsys, "import", *files, "--out", passed)
+    told = json.loads(run(capsys, "import", *files, "--out", passed, "--json", "-"))
+    assert (told["pulses"], told["frequencies"], told["file"]) == (469, 424, str(passed))
     options = ("--method", "backprojection", "--pixels", 128, "--pixel-spacing-m", 0.2)
     run(capsys, "image", passed, framed, *options)
     (frame,) = read_pass(framed).frames
@@ -110,6 +199,7 @@ def test_nan_echoes_are_refused(capsys, echoes, tmp_path):
     with h5py.File(broken, "r+") as file:
         file["history/samples"][5, 7] = np.nan
     assert "are NaN or infinite" in refused(capsys, "image", broken, tmp_path / "out.h5")
+    assert list(tmp_path.iterdir()) == [broken]
 
 
 def test_a_line_of_sight_that_stands_still_is_refused(capsys, echoes, tmp_path):
@@ -119,10 +209,80 @@ def test_a_line_of_sight_that_stands_still_is_refused(capsys, echoes, tmp_path):
         file["track/line_of_sight"][...] = [1.0, 0.0, 0.0]
         file["track/line_of_sight_rate_per_s"][...] = 0.0
     assert "stands still" in refused(capsys, "image", still, tmp_path / "out.h5")
+    assert list(tmp_path.iterdir()) == [still]
 
 
-def test_fewer_than_two_views_are_refused(capsys):
+def test_fewer_than_two_views_are_refused(capsys, one_frame):
     assert "at least 2 views, got 1" in refused(capsys, "experiment", "wide", "--views", 1)
+    for path in one_frame:
+        for command in ("reconstruct", "serve"):
+            line = refused(capsys, command, path)
+            assert f"at least 2 views; {path} gives 1" in line
+
+
+def test_two_files_of_one_frame_each_make_two_views(capsys, one_frame):
+    _, frames = one_frame
+    out = run(capsys, "reconstruct", frames, frames, "--spacing-m", 0.5)
+    assert "Hull of 2 views, 2 votes" in out
+
+
+def test_frames_without_a_target_do_not_count_as_views(capsys, one_frame, tmp_path):
+    _, frames = one_frame
+    (frame,) = read_pass(frames).frames
+    noise = np.random.default_rng(1).rayleigh(1.0, frame.shape)
+    path = tmp_path / "noise.h5"
+    write_pass(path, RecordedPass(frames=(frame, replace(frame, amplitude=noise))))
+    with pytest.raises(SystemExit):
+        main(["reconstruct", str(path), "--spacing-m", "0.5"])
+    err = capsys.readouterr().err
+    assert "radarhull: note: frame 2 shows no target and does not vote.\n" in err
+    assert "at least 2 views; 1 of 2 frames show a target" in err
+
+
+def test_misses_are_views(capsys, one_frame):
+    line = refused(capsys, "reconstruct", one_frame[1], "--tolerated-misses", -1)
+    assert "--tolerated-misses wants the number of views" in line
+    assert "--tolerated-misses" in refused(capsys, "serve", "--tolerated-misses", -1)
+
+
+@pytest.mark.parametrize(
+    ("words", "wanted"),
+    [
+        ("wide --data X", "wide experiment has no use for --data"),
+        ("temple --views 5 --seed 2", "temple experiment has no use for --views, --seed"),
+    ],
+)
+def test_options_of_the_other_experiment_are_refused(capsys, words, wanted):
+    assert wanted in refused(capsys, "experiment", *words.split())
+
+
+@pytest.mark.parametrize(
+    ("words", "wanted"),
+    [
+        ("image {pass} {out}/out.h5 --picture {out}/p.jpg", "must end in .png"),
+        ("image {pass} {out}/out.h5 --json {out}/no/a.json", "no folder"),
+        ("image {pass} {out}/out.txt", "must end in .h5, .hdf5"),
+        ("reconstruct {pass} --out {out}/a.xyz", "must end in .glb, .ply, .stl"),
+        ("reconstruct {pass} --out {out}/a.glb --json {out}/no/a.json", "no folder"),
+        ("simulate {out}/no/o.h5", "no folder"),
+        ("import {pass} --out {out}/no/o.h5", "no folder"),
+        ("experiment wide --json {out}", "is a folder"),
+    ],
+)
+def test_outputs_are_checked_before_the_work(capsys, echoes, tmp_path, words, wanted):
+    named = [word.format(out=tmp_path, **{"pass": echoes}) for word in words.split()]
+    assert wanted in refused(capsys, *named)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_simulation_is_summarised_for_machines(capsys, tmp_path):
+    out, facts = tmp_path / "out.h5", tmp_path / "facts.json"
+    options = ("--mask-deg", 41, "--scatterers", 200, "--frequency-count", 192, "--json", facts)
+    assert str(out) in run(capsys, "simulate", out, *options)
+    told, history = json.loads(facts.read_text()), read_pass(out).history
+    assert (told["pulses"], told["frequencies"]) == history.samples.shape
+    assert history.samples.shape[1] == 192
+    assert told["epoch_utc"] == history.track.epoch_utc
 
 
 def test_a_port_in_use_is_named(capsys):

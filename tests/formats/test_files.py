@@ -24,12 +24,17 @@ def test_a_folder_without_write_permission_is_refused(tmp_path, monkeypatch):
         checked_output(tmp_path / "hull.glb")
 
 
+def write_half(path):
+    with written_aside(path) as aside:
+        aside.write_text("half")
+        raise OSError(errno.ENOSPC, "a library's own long text")
+
+
 def test_an_old_file_stays_when_the_new_one_fails(tmp_path):
     path = tmp_path / "facts.json"
     path.write_text("old")
-    with pytest.raises(ValueError, match="No space left on device"), written_aside(path) as aside:
-        aside.write_text("half")
-        raise OSError(errno.ENOSPC, "a library's own long text")
+    with pytest.raises(ValueError, match="No space left on device"):
+        write_half(path)
     assert [file.read_text() for file in tmp_path.iterdir()] == ["old"]
 
 

@@ -9,7 +9,6 @@ from core.hull.reprojection import reprojected_mask
 from core.hull.surface import hull_surface
 from core.hull.view import View
 from core.hull.votes import VoteVolume
-from core.hull.warm_up import warm_up
 from core.silhouettes.silhouette import Silhouette
 
 GRID = VoxelGrid.cube(side_m=8.0, spacing_m=0.25)
@@ -93,7 +92,3 @@ def test_more_than_255_views_vote_exactly():
     volume.add_many([box_view(0)] * 300)
     assert volume.votes.max() == 300
     assert volume.votes.dtype == np.uint16
-
-
-def test_warming_up_runs_every_kernel():
-    warm_up()
