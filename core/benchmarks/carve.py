@@ -26,6 +26,9 @@ WANTED_RATIOS = {
     (512, 120): {"the fastest peer": ">= 15"},
 }
 
+ONCE_PAST_BUDGETS = 3
+"""A peer that cannot be measured on a part, and takes so many budgets, runs once."""
+
 Votes = NDArray[Any]
 
 
@@ -95,7 +98,7 @@ def run_carve(
         sizes: (voxels a side, views).
         repeats: runs of each contender; the median counts.
         budget_s: a peer that would take longer than this for the whole volume is measured on
-            every n-th slice, and its figure says so.
+            every n-th slice, and its figure says so; where it cannot be, it runs once.
         seed: of the views.
         progress: told of stage, steps done and steps in all.
     """
@@ -153,6 +156,8 @@ def _race(
     wrong: dict[str, Outcome] = {}
     for repeat in range(repeats):
         for number, each in enumerate(contenders):
+            if repeat > 0 and times[each.name][0].seconds > ONCE_PAST_BUDGETS * budget_s:
+                continue
             run = measured(each.run)
             if repeat == 0:
                 wrong[each.name] = _compared(each, run.result, planes, reference, len(task.views))
@@ -181,19 +186,13 @@ def _contenders(task: Task, budget_s: float) -> list[Contender]:
 
 
 def _peer_contender(task: Task, peer: Peer, budget_s: float) -> Contender:
-    """Return a peer with all planes, or as many as it can do within the budget."""
+    """Return a peer with all planes, or as many as it can do within the budget, warmed up."""
     votes = peer.function()
-    count = task.grid.shape[0]
-    stride = 1
+    planes, stride = task.all_planes(), 1
     if not peer.whole_only:
-        trial = every_nth_plane(count, max(1, count // 2))
-        votes(task, trial)  # compiles
-        estimate = measured(lambda: votes(task, trial)).seconds * count / len(trial)
-        while estimate > budget_s * stride and stride < count // 2:
-            stride *= 2
-    planes = every_nth_plane(count, stride)
-    if not peer.hull_only:
-        votes(task, planes)  # compiles for these shapes
+        planes, stride = _affordable(votes, task, budget_s)
+    elif not peer.hull_only:
+        votes(task, planes)  # compiles
     return Contender(
         name=peer.name,
         run=lambda: votes(task, planes),
@@ -201,6 +200,20 @@ def _peer_contender(task: Task, peer: Peer, budget_s: float) -> Contender:
         stride=stride,
         hull_only=peer.hull_only,
     )
+
+
+def _affordable(
+    votes: Callable[[Task, NDArray[np.int64]], Votes], task: Task, budget_s: float
+) -> tuple[NDArray[np.int64], int]:
+    """Return the planes, and their stride, that a peer is likely to do within the budget."""
+    count = task.grid.shape[0]
+    stride = 1 << int(np.log2(count // 2))
+    while True:
+        planes = every_nth_plane(count, stride)
+        seconds = measured(lambda planes=planes: votes(task, planes)).seconds  # type: ignore[misc]
+        if stride == 1 or 2 * seconds > budget_s:
+            return planes, stride
+        stride //= 2
 
 
 def _compared(
