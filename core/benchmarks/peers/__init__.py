@@ -43,12 +43,14 @@ class Peer:
 
     @property
     def version(self) -> str | None:
-        """The installed version, or the program's path; None if not installed."""
+        """The installed version, or the program's path; None if it cannot be used."""
         if self.is_program:
             return shutil.which(self.needs)
         try:
+            # What is installed may lack something of its own, as Open3D without dash does.
+            self.function()
             return version(self.needs)
-        except PackageNotFoundError:
+        except (ImportError, PackageNotFoundError):
             return None
 
     def function(self) -> Votes:
