@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable
 
 from app.arguments import parsed_call
+from app.commands.bench import bench
 from app.commands.experiment import experiment
 from app.commands.image import image
 from app.commands.import_ import import_
@@ -25,6 +26,7 @@ _COMMANDS: dict[str, Callable[..., None]] = {
     "image": image,
     "reconstruct": reconstruct,
     "experiment": experiment,
+    "bench": bench,
 }
 
 _HELP = """usage: radarhull [COMMAND] [--help] [--version]

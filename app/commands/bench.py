@@ -1,0 +1,104 @@
+"""`radarhull bench`."""
+
+import importlib
+import importlib.util
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Literal
+
+import tyro
+
+from app.commands.console import Report, progress_bars
+from app.commands.options import JsonTo, OptionalInt, checked_seed
+from app.commands.outputs import checked_json, show_results
+from core.benchmarks import carve, edit, growth
+from core.experiments.results import Results
+
+Sizes = Sequence[tuple[int, int]]
+
+
+def bench(
+    name: Annotated[Literal["carve", "edit", "growth", "surface"], tyro.conf.Positional],
+    /,
+    *,
+    sizes: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NxVIEWS", help_behavior_hint="")] = (),
+    repeats: OptionalInt = None,
+    json: JsonTo = None,
+    out: Annotated[Path | None, tyro.conf.arg(metavar="FOLDER", help_behavior_hint="")] = None,
+    seed: int = 1,
+) -> None:
+    """Measure the carving engine on a test satellite with exact outlines.
+
+    carve: all votes, against every peer that is installed and against the exact votes. edit: from
+    a dragged vertex or a new outline to the exact mesh. growth: time and memory against voxels,
+    views and vertices. surface: error against the true hull. Peers come with the extra "bench".
+
+    Args:
+        name: what to measure.
+        sizes: voxels a side and views, as 256x60; the benchmark's own by default.
+        repeats: runs (carve, growth) or edits (edit) of each kind; the benchmark's own by default.
+        json: write settings and figures as JSON to this file, or to standard output for "-".
+        out: folder for plots (growth).
+        seed: of views and edits.
+    """
+    if repeats is not None and repeats < 1:
+        raise ValueError(f"At least 1 repeat is needed, got {repeats}.")
+    if out is not None and name != "growth":
+        raise ValueError(f"Only growth draws plots; leave --out away for {name}.")
+    checked_json(json)
+    checked_seed(seed)
+    chosen = tuple(_size(text) for text in sizes)
+    with progress_bars() as report:
+        results = _run(name, chosen, repeats, out, seed, report)
+    show_results(results, json)
+
+
+def _run(
+    name: str, sizes: Sizes, repeats: int | None, out: Path | None, seed: int, report: Report
+) -> Results:
+    if name == "carve":
+        return carve.run_carve(
+            sizes=sizes or carve.SIZES, repeats=repeats or 5, seed=seed, progress=report
+        )
+    if name == "edit":
+        return edit.run_edit(
+            sizes=sizes or edit.SIZES, repeats=repeats or 100, seed=seed, progress=report
+        )
+    if name == "surface":
+        return _surface(sizes, seed, report)
+    return _growth(sizes, repeats or 5, out, seed, report)
+
+
+def _growth(sizes: Sizes, repeats: int, out: Path | None, seed: int, report: Report) -> Results:
+    if out is not None:
+        _require("matplotlib", "A plot")
+    results, curves = growth.run_growth(
+        sizes=sizes or growth.SIZES, repeats=repeats, seed=seed, progress=report
+    )
+    if out is not None:
+        importlib.import_module("core.benchmarks.plots").plot_growth(curves, out / "growth.png")
+    return results
+
+
+def _surface(sizes: Sizes, seed: int, report: Report) -> Results:
+    _require("manifold3d", "The true hull")
+    surface = importlib.import_module("core.benchmarks.surface")
+    results: Results = surface.run_surface(sizes=sizes or surface.SIZES, seed=seed, progress=report)
+    return results
+
+
+def _require(package: str, what: str) -> None:
+    if importlib.util.find_spec(package) is None:
+        raise ValueError(
+            f'{what} needs {package}; install it with: pip install "radarhull[bench]".'
+        )
+
+
+def _size(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d+)[x×](\d+)", text)
+    if match is None or int(match[1]) < 8 or int(match[2]) < 2:
+        raise ValueError(
+            f'A size reads like 256x60, at least 8 voxels a side and 2 views; got "{text}".'
+        )
+    return int(match[1]), int(match[2])

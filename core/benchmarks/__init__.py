@@ -1,0 +1,1 @@
+"""What the engine is measured against: its peers, its own growth, and the true hull."""

@@ -1,0 +1,108 @@
+"""Time, memory and medians, measured alike for every contender."""
+
+import os
+import re
+import resource
+import statistics
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from core.hull.threads import in_parallel, thread_count
+
+Result = TypeVar("Result")
+Progress = Callable[[str, int, int], None]
+
+MEMORY_METHOD = (
+    "peak resident memory of the process during the run less that before it "
+    "(VmHWM reset through clear_refs on Linux, else ru_maxrss)"
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Run(Generic[Result]):
+    """One measured run.
+
+    Attributes:
+        seconds: wall-clock time.
+        peak_bytes: see `MEMORY_METHOD`.
+        result: what was run returned.
+    """
+
+    seconds: float
+    peak_bytes: int
+    result: Result
+
+
+def measured(work: Callable[[], Result]) -> Run[Result]:
+    """Run and measure."""
+    _forget_peak_memory()
+    before = _memory_bytes("VmRSS")
+    start = time.perf_counter()
+    result = work()
+    seconds = time.perf_counter() - start
+    peak = max(0, _memory_bytes("VmHWM") - before)
+    return Run(seconds=seconds, peak_bytes=peak, result=result)
+
+
+def median_s(runs: Sequence[float]) -> float:
+    """Return the median of some times."""
+    return statistics.median(runs)
+
+
+def percentile(values: Sequence[float], percent: float) -> float:
+    """Return the value that `percent` of them do not exceed."""
+    return float(np.percentile(values, percent))
+
+
+def fitted_exponent(sizes: Sequence[float], values: Sequence[float]) -> float:
+    """Return p of the power law values ∝ sizes^p that fits best on logarithmic axes."""
+    slope, _ = np.polyfit(np.log(sizes), np.log(values), 1)
+    return float(slope)
+
+
+def machine() -> dict[str, object]:
+    """Return what a reader of the figures must know of the machine and its business."""
+    return {
+        "threads": thread_count(),
+        "load_average": round(os.getloadavg()[0], 2),
+        "memory": MEMORY_METHOD,
+    }
+
+
+def copy_bandwidth_bytes_per_s(megabytes: int = 256, repeats: int = 5) -> float:
+    """Return the best rate, read and written bytes together, of copying with all threads.
+
+    Source: the copy kernel of McCalpin's STREAM.
+    """
+    source = np.ones(megabytes * 2**20, dtype=np.uint8)
+    target = np.zeros_like(source)
+    parts = np.array_split(np.arange(len(source)), thread_count())
+    spans = [slice(int(part[0]), int(part[-1]) + 1) for part in parts]
+
+    def copy(span: slice) -> None:
+        np.copyto(target[span], source[span])
+
+    seconds = min(measured(lambda: in_parallel(copy, spans)).seconds for _ in range(repeats))
+    return 2 * len(source) / seconds
+
+
+def _forget_peak_memory() -> None:
+    try:
+        Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
+    except OSError:
+        return
+
+
+def _memory_bytes(field: str) -> int:
+    try:
+        found = re.search(rf"{field}:\s+(\d+) kB", Path("/proc/self/status").read_text("ascii"))
+    except OSError:
+        found = None
+    if found is not None:
+        return 1024 * int(found.group(1))
+    return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
