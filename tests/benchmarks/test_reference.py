@@ -20,7 +20,8 @@ def test_the_reference_is_the_papers_polygon_test(task: Task) -> None:
     )
     found = reference_votes(task, task.all_planes())
     np.testing.assert_array_equal(found.ravel(), papers)
-    assert 0 < np.count_nonzero(found) and found.max() > 3
+    assert np.count_nonzero(found) > 0
+    assert found.max() > 3
 
 
 def test_planes_of_a_coarser_stride_are_among_the_finer_ones() -> None:
