@@ -1,13 +1,13 @@
 """`radarhull bench carve`: all votes of all views, the engine against its peers."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from core.benchmarks.measuring import Progress, Run, machine, measured, median_s
+from core.benchmarks.measuring import Progress, machine, measured, median_s, peak_bytes
 from core.benchmarks.peers import PEERS, Peer
 from core.benchmarks.reference import every_nth_plane, reference_stride, reference_votes
 from core.benchmarks.workload import Task, degenerate_task, satellite_task
@@ -63,7 +63,7 @@ class Outcome:
     Attributes:
         contender: who.
         seconds: for the whole volume, one per repeat.
-        peak_bytes: the most of any run; not scaled.
+        peak_bytes: of one run; not scaled.
         wrong_votes: voxels whose votes differ from the reference; None if it does not count.
         wrong_hull: voxels that are in one hull and not in the other.
         compared: voxels that were compared.
@@ -152,22 +152,28 @@ def _race(
     reference = reference_votes(task, planes)
     progress(f"{title}: exact votes", 1, 1)
     contenders = _contenders(task, budget_s)
-    times: dict[str, list[Run[Votes]]] = {each.name: [] for each in contenders}
-    wrong: dict[str, Outcome] = {}
-    for repeat in range(repeats):
+    steps = len(contenders) * (repeats + 1)
+    outcomes = []
+    for each in contenders:
+        peak, votes = peak_bytes(each.run)
+        outcome = _compared(each, votes, planes, reference, len(task.views))
+        outcomes.append(replace(outcome, peak_bytes=peak))
+        progress(f"{title}: race", len(outcomes), steps)
+    times: list[list[float]] = [[] for _ in contenders]
+    for repeat in range(1, repeats + 1):
         for number, each in enumerate(contenders):
-            if repeat > 0 and times[each.name][0].seconds > ONCE_PAST_BUDGETS * budget_s:
-                continue
-            run = measured(each.run)
-            if repeat == 0:
-                wrong[each.name] = _compared(each, run.result, planes, reference, len(task.views))
-            times[each.name].append(
-                Run(seconds=run.seconds, peak_bytes=run.peak_bytes, result=np.empty(0))
-            )
-            progress(
-                f"{title}: race", repeat * len(contenders) + number + 1, repeats * len(contenders)
-            )
-    return [_with_times(wrong[each.name], times[each.name]) for each in contenders]
+            if not times[number] or times[number][0] <= ONCE_PAST_BUDGETS * budget_s:
+                times[number].append(measured(each.run).seconds)
+            progress(f"{title}: race", repeat * len(contenders) + number + 1, steps)
+    return [
+        replace(outcome, seconds=tuple(_whole(outcome.contender, seconds) for seconds in own))
+        for outcome, own in zip(outcomes, times, strict=True)
+    ]
+
+
+def _whole(contender: Contender, seconds: float) -> float:
+    """Return the time for the whole volume."""
+    return seconds * contender.stride
 
 
 def _contenders(task: Task, budget_s: float) -> list[Contender]:
@@ -238,20 +244,6 @@ def _compared(
         wrong_hull=wrong_hull,
         compared=len(common) * reference[0].size,
         hull=hull,
-    )
-
-
-def _with_times(outcome: Outcome, runs: Sequence[Run[Votes]]) -> Outcome:
-    scale = len(outcome.contender.planes)
-    whole = scale if outcome.contender.stride == 1 else scale * outcome.contender.stride
-    return Outcome(
-        contender=outcome.contender,
-        seconds=tuple(run.seconds * whole / scale for run in runs),
-        peak_bytes=max(run.peak_bytes for run in runs),
-        wrong_votes=outcome.wrong_votes,
-        wrong_hull=outcome.wrong_hull,
-        compared=outcome.compared,
-        hull=outcome.hull,
     )
 
 

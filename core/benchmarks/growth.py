@@ -13,6 +13,7 @@ from core.benchmarks.measuring import (
     machine,
     measured,
     median_s,
+    peak_bytes,
 )
 from core.benchmarks.workload import Task, satellite_task
 from core.experiments.results import Figure, Results, Table
@@ -140,7 +141,7 @@ def _point(amount: float, task: Task, repeats: int) -> Point:
         amount=amount,
         votes_s=median_s([votes.seconds for votes, _ in runs]),
         mesh_s=median_s([mesh.seconds for _, mesh in runs]),
-        peak_bytes=max(votes.peak_bytes + mesh.peak_bytes for votes, mesh in runs),
+        peak_bytes=peak_bytes(lambda: _run(task))[0],
     )
 
 

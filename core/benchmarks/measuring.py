@@ -1,5 +1,7 @@
 """Time, memory and medians, measured alike for every contender."""
 
+import ctypes
+import gc
 import os
 import re
 import resource
@@ -18,8 +20,8 @@ Result = TypeVar("Result")
 Progress = Callable[[str, int, int], None]
 
 MEMORY_METHOD = (
-    "peak resident memory of the process during the run less that before it "
-    "(VmHWM reset through clear_refs on Linux, else ru_maxrss)"
+    "peak resident memory of the process during one untimed run less that before it, freed memory "
+    "given back first (malloc_trim; VmHWM reset through clear_refs; elsewhere ru_maxrss)"
 )
 
 
@@ -29,24 +31,27 @@ class Run(Generic[Result]):
 
     Attributes:
         seconds: wall-clock time.
-        peak_bytes: see `MEMORY_METHOD`.
         result: what was run returned.
     """
 
     seconds: float
-    peak_bytes: int
     result: Result
 
 
 def measured(work: Callable[[], Result]) -> Run[Result]:
-    """Run and measure."""
-    _forget_peak_memory()
-    before = _memory_bytes("VmRSS")
+    """Run and measure the time."""
     start = time.perf_counter()
     result = work()
-    seconds = time.perf_counter() - start
-    peak = max(0, _memory_bytes("VmHWM") - before)
-    return Run(seconds=seconds, peak_bytes=peak, result=result)
+    return Run(seconds=time.perf_counter() - start, result=result)
+
+
+def peak_bytes(work: Callable[[], Result]) -> tuple[int, Result]:
+    """Run and measure the memory (see `MEMORY_METHOD`); return it and what was run returned."""
+    _give_back_freed_memory()
+    _forget_peak_memory()
+    before = _memory_bytes("VmRSS")
+    result = work()
+    return max(0, _memory_bytes("VmHWM") - before), result
 
 
 def median_s(runs: Sequence[float]) -> float:
@@ -89,6 +94,15 @@ def copy_bandwidth_bytes_per_s(megabytes: int = 256, repeats: int = 5) -> float:
 
     seconds = min(measured(lambda: in_parallel(copy, spans)).seconds for _ in range(repeats))
     return 2 * len(source) / seconds
+
+
+def _give_back_freed_memory() -> None:
+    """Keep what earlier runs freed from serving this one unseen."""
+    gc.collect()
+    # Only the GNU C library has it.
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
+    if trim is not None:
+        trim(0)
 
 
 def _forget_peak_memory() -> None:

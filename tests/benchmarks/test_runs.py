@@ -7,7 +7,7 @@ from core.benchmarks.carve import run_carve
 from core.benchmarks.edit import equality_figures, rival_is_installed, run_edit
 from core.benchmarks.edits import drags, redrawn
 from core.benchmarks.growth import run_growth
-from core.benchmarks.measuring import fitted_exponent, measured
+from core.benchmarks.measuring import fitted_exponent, peak_bytes
 from core.benchmarks.peers import PEERS
 from core.benchmarks.workload import satellite_task, satellite_views
 from core.hull.outline import outline_of
@@ -77,5 +77,7 @@ def test_growth_fits_powers() -> None:
 
 
 def test_memory_is_the_peak_of_the_run() -> None:
-    run = measured(lambda: np.ones(2**26, dtype=np.uint8).sum())
-    assert run.peak_bytes >= 0.9 * 2**26
+    # Again and again: what an earlier run freed must not hide a later one's need.
+    for count in (2**26, 2**23, 2**23):
+        found, _ = peak_bytes(lambda count=count: np.ones(count, dtype=np.uint8).sum())
+        assert 0.9 * count <= found <= 1.5 * count
