@@ -6,8 +6,8 @@ import pytest
 
 from core.experiments.wide import simulated_frames
 from core.hull.registration import centroid_px
-from core.radar.targets import tiangong_like
 from core.reconstruction import ReconstructionSettings, reconstruct
+from core.targets import tiangong_like
 
 SETTINGS = ReconstructionSettings(spacing_m=0.4)
 

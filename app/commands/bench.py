@@ -13,6 +13,7 @@ from app.commands.console import Report, progress_bars
 from app.commands.options import JsonTo, OptionalInt, checked_seed
 from app.commands.outputs import checked_json, show_results
 from core.benchmarks import carve, edit, growth
+from core.benchmarks.plots import plot_growth
 from core.experiments.results import Results
 
 Sizes = Sequence[tuple[int, int]]
@@ -71,13 +72,11 @@ def _run(
 
 
 def _growth(sizes: Sizes, repeats: int, out: Path | None, seed: int, report: Report) -> Results:
-    if out is not None:
-        _require("matplotlib", "A plot")
     results, curves = growth.run_growth(
         sizes=sizes or growth.SIZES, repeats=repeats, seed=seed, progress=report
     )
     if out is not None:
-        importlib.import_module("core.benchmarks.plots").plot_growth(curves, out / "growth.png")
+        plot_growth(curves, out / "growth.png")
     return results
 
 

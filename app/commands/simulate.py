@@ -36,8 +36,8 @@ from core.geometry.track import LineOfSightTrack
 from core.radar.echoes import simulate_echoes
 from core.radar.phase_history import PhaseHistory
 from core.radar.scatterers import surface_scatterers
-from core.radar.targets import Target, tiangong_like
 from core.radar.waveform import Waveform
+from core.targets import Target, tiangong_like
 
 Item = TypeVar("Item")
 

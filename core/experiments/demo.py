@@ -21,8 +21,8 @@ from core.radar.echoes import simulate_echoes
 from core.radar.imaging import ImagingSettings, polar_format_frame
 from core.radar.intervals import CoherentInterval, divide
 from core.radar.scatterers import surface_scatterers
-from core.radar.targets import tiangong_like
 from core.radar.waveform import Waveform
+from core.targets import tiangong_like
 
 DEMO_ORBIT = MeanElements(
     name="Tiangong-1-like",

@@ -18,9 +18,9 @@ from core.parallel import in_order
 from core.radar.echoes import simulate_echoes
 from core.radar.imaging import ImagingSettings, frames
 from core.radar.scatterers import surface_scatterers
-from core.radar.targets import LineFeature, Target, tiangong_like
 from core.radar.waveform import Waveform
 from core.silhouettes.extraction import extract_silhouette
+from core.targets import LineFeature, Target, tiangong_like
 
 Progress = Callable[[str, int, int], None]
 

@@ -7,7 +7,7 @@ import trimesh
 from numpy.typing import NDArray
 
 from core.arrays import Floats, frozen
-from core.radar.targets import Target
+from core.targets import Target
 
 SURFACE_OFFSET_M = 1e-3
 """Rays start this far off the surface, or they would meet their own facet."""

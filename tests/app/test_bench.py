@@ -14,7 +14,6 @@ def test_bench_writes_the_common_form(capsys: pytest.CaptureFixture[str]) -> Non
 
 
 def test_growth_draws_its_curves(tmp_path) -> None:
-    pytest.importorskip("matplotlib")
     main(["bench", "growth", "--sizes", "16x4", "24x4", "--repeats", "1", "--out", str(tmp_path)])
     assert (tmp_path / "growth.png").stat().st_size > 10_000
 

@@ -5,7 +5,7 @@ from scipy.spatial.transform import Rotation
 from core.geometry.grid import VoxelGrid
 from core.hull.surface import mask_surface
 from core.measurement.lines import angle_between_lines_rad, principal_lines
-from core.radar.targets import tiangong_like
+from core.targets import tiangong_like
 
 NAMES = ("span", "length", "diameter")
 

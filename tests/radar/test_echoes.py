@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from core.geometry.track import random_views_track
 from core.radar.echoes import point_echoes, receiver_noise, simulate_echoes
 from core.radar.scatterers import surface_scatterers
-from core.radar.targets import Target
 from core.radar.waveform import SPEED_OF_LIGHT_M_PER_S, Waveform
+from core.targets import Target
 
 WAVEFORM = Waveform(frequency_count=64)
 

@@ -3,7 +3,7 @@ import pytest
 import trimesh
 
 from core.radar.scatterers import lit_amplitudes, surface_scatterers
-from core.radar.targets import Target
+from core.targets import Target
 
 
 def plates():

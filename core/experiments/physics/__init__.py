@@ -1,0 +1,1 @@
+"""The physics behind the pipeline, held against theory and measured data, part by part."""
