@@ -160,26 +160,48 @@ def tables_of(voters: Mapping[int, Voter], cells: Mapping[int, EdgeCells]) -> Cr
 
 
 def exact_slab(
-    votes: Votes, threshold: int, layers: tuple[int, int], tables: CrossingTables
+    votes: Votes,
+    threshold: int,
+    layers: tuple[int, int],
+    tables: CrossingTables,
+    low: tuple[int, int, int] = (0, 0, 0),
 ) -> Slab:
-    """Return one slab's mesh with every vertex where the hull's boundary is."""
+    """Return one slab's mesh with every vertex where the hull's boundary is.
+
+    The votes may be those of a window that begins at voxel `low` and in which layers are counted.
+    """
     crossed, faces = mesh_slab(votes, threshold, *layers, triangle_table(), edge_tables())
     vertices, _ = cross_grid_edges(
         crossed,
         votes,
+        np.array(low),
         threshold,
         tables.to_image,
         tables.points,
         tables.cell_maps,
         tables.starts,
         tables.edges,
+        tables.lines,
     )
     return Slab(vertices=vertices, faces=faces)
 
 
 def joined_surface(slabs: list[Slab], grid: VoxelGrid) -> Surface:
     """Return consecutive slabs as one surface in metres."""
-    bases = np.cumsum([0] + [len(slab.vertices) for slab in slabs]).astype(np.int32)
-    faces = [slab.faces + base for slab, base in zip(slabs, bases[:-1], strict=True)]
-    vertices_m = np.concatenate([slab.vertices for slab in slabs]) * grid.spacing_m + grid.origin_m
-    return Surface(vertices_m=vertices_m, faces=np.concatenate(faces))
+    vertex_ends = np.cumsum([0] + [len(slab.vertices) for slab in slabs])
+    face_ends = np.cumsum([0] + [len(slab.faces) for slab in slabs])
+    vertices_m = np.empty((vertex_ends[-1], 3))
+    faces = np.empty((face_ends[-1], 3), dtype=np.int32)
+
+    def write(number: int) -> None:
+        base = vertex_ends[number]
+        own = vertices_m[base : vertex_ends[number + 1]]
+        np.multiply(slabs[number].vertices, grid.spacing_m, out=own)
+        own += grid.origin_m
+        joined = faces[face_ends[number] : face_ends[number + 1]]
+        np.add(slabs[number].faces, np.int32(base), out=joined)
+
+    in_parallel(write, range(len(slabs)))
+    # Given away read-only, the arrays need not be copied.
+    vertices_m.flags.writeable = faces.flags.writeable = False
+    return Surface(vertices_m=vertices_m, faces=faces)
