@@ -1,16 +1,15 @@
 """The voxel grid on which views vote."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from core.arrays import Floats, frozen
 
-MAX_VOXELS = 2**30
-"""Voxels that one in-memory volume may hold: 1024³, 2 GiB of votes and 4 GiB while meshed."""
-
-BYTES_PER_VOXEL = 6
-"""Two of votes, and four of the mesher's copy."""
+MAX_VOXELS = 2**36
+"""Voxels of the largest grid, 4096³: what can be carved plane by plane. Who stores a number for
+each voxel asks for less."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -37,11 +36,10 @@ class VoxelGrid:
             raise ValueError(
                 f"A grid needs at least 2 voxels along each of 3 axes, got {self.shape}."
             )
-        count = int(np.prod(self.shape, dtype=np.int64))
-        if count > MAX_VOXELS:
+        if self.voxel_count > MAX_VOXELS:
             raise ValueError(
-                f"A grid of {self.shape} holds {count:,} voxels; carving would need "
-                f"{BYTES_PER_VOXEL * count / 2**30:.0f} GiB; at most {MAX_VOXELS:,} fit. "
+                f"A grid of {self.shape} holds {self.voxel_count:,} voxels; one byte each would "
+                f"need {self.voxel_count / 2**30:,.0f} GiB; at most {MAX_VOXELS:,} can be carved. "
                 "Use a larger spacing."
             )
 
@@ -66,6 +64,11 @@ class VoxelGrid:
             spacing_m=spacing_m,
             shape=(int(counts[0]), int(counts[1]), int(counts[2])),
         )
+
+    @property
+    def voxel_count(self) -> int:
+        """Number of voxels."""
+        return math.prod(map(int, self.shape))
 
     @property
     def upper_m(self) -> Floats:

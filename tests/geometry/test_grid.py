@@ -30,7 +30,7 @@ def test_indices_map_to_metres():
     [
         (0.0, 0.1, "must be positive metres"),
         (1.0, float("nan"), "must be positive metres"),
-        (1000.0, 0.1, "carving would need 5588 GiB"),
+        (1000.0, 0.1, "one byte each would need 931 GiB"),
     ],
 )
 def test_impossible_grids_are_refused(side_m, spacing_m, message):
