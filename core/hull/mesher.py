@@ -17,6 +17,7 @@ from core.hull.closed_mesh import Surface
 from core.hull.crossings import CrossingTables, any_within, cross_grid_edges
 from core.hull.cube_cases import edge_tables, triangle_table
 from core.hull.edge_cells import EdgeCells, longest_grid_edge_px
+from core.hull.kept_crossings import ChangedOutlines, end_votes, kept_crossings
 from core.hull.slab_mesh import mesh_slab
 from core.hull.threads import in_parallel
 from core.hull.votes import Voter, Votes, VoteVolume
@@ -29,12 +30,16 @@ class Slab:
     """The mesh of some planes.
 
     Attributes:
-        vertices: (vertices, 3) in voxel indices.
+        vertices: (vertices, 3) in voxel indices, one on each crossed grid edge.
         faces: (faces, 3) numbers of this slab's vertices, continued into the next slab's.
+        crossed: (vertices, 4) the grid edges, as `mesh_slab` returns them.
+        ends: (vertices, 2) votes at their ends.
     """
 
     vertices: Floats
     faces: NDArray[np.int32]
+    crossed: NDArray[np.int32]
+    ends: NDArray[np.uint16]
 
 
 class SurfaceMesher:
@@ -62,55 +67,73 @@ class SurfaceMesher:
         with self._volume.reading():
             threshold = self._volume.checked_threshold(self._volume.threshold)
             voters = voting(self._volume)
-            self._forget_changed(voters, threshold)
-            self._mesh_missing(voters, threshold)
+            before = list(self._slabs)
+            # Also where no slab is meshed again now: a later edit will ask for them.
+            for number in [n for n in self._cells if voters.get(n) is not self._voters.get(n)]:
+                del self._cells[number]
+            changes = self._forget_changed(voters, threshold)
+            self._mesh_missing(voters, threshold, before, changes)
             self._voters, self._threshold = voters, threshold
             self._revision = self._volume.revision
         return joined_surface([slab for slab in self._slabs if slab], self._volume.grid)
 
-    def _forget_changed(self, voters: dict[int, Voter], threshold: int) -> None:
-        """Drop the slabs that the changes since the last surface could have touched."""
-        if voters.keys() != self._voters.keys() or threshold != self._threshold:
+    def _forget_changed(self, voters: dict[int, Voter], threshold: int) -> ChangedOutlines | None:
+        """Drop the slabs that the changes since the last surface could have touched.
+
+        Returns:
+            What changed of the outlines; None when anything may have changed anywhere.
+        """
+        changes = self._changes(voters, threshold)
+        if changes is None:
             self._slabs = [None] * len(self._slabs)
-            return
+            return None
         flipped = self._volume.planes_changed_since(self._revision)
-        replaced = [n for n, voter in voters.items() if voter is not self._voters[n]]
         for number, (first, last) in enumerate(slab_layers(self._volume.grid)):
-            if flipped[max(first, 0) : last + 1].any():
+            slab = self._slabs[number]
+            if flipped[max(first, 0) : last + 1].any() or (slab and _is_near(slab, changes)):
                 self._slabs[number] = None
-        for number in replaced:
-            self._forget_near(self._voters[number], voters[number])
+        return changes
 
-    def _forget_near(self, old: Voter, new: Voter) -> None:
-        """Drop the slabs that have a vertex near what changed of an outline."""
-        if not np.array_equal(old.to_image, new.to_image):
-            self._slabs = [None] * len(self._slabs)
-            return
-        points = changed_edges(old.outline, new.outline)[0]
-        if len(points) == 0:
-            return
-        reach = longest_grid_edge_px(new.to_image, self._volume.grid)
-        low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
-        for number, slab in enumerate(self._slabs):
-            if slab and any_within(slab.vertices, new.to_image, low, high):
-                self._slabs[number] = None
+    def _changes(self, voters: dict[int, Voter], threshold: int) -> ChangedOutlines | None:
+        """Return what changed of the outlines, None if views or threshold are others."""
+        if voters.keys() != self._voters.keys() or threshold != self._threshold:
+            return None
+        found = []
+        for number, new in voters.items():
+            old = self._voters[number]
+            if new is old:
+                continue
+            if not np.array_equal(old.to_image, new.to_image):
+                return None
+            points = changed_edges(old.outline, new.outline)[0]
+            if len(points):
+                reach = longest_grid_edge_px(new.to_image, self._volume.grid)
+                lower, upper = points.min(axis=0) - reach, points.max(axis=0) + reach
+                found.append((new.to_image, lower, upper))
+        return ChangedOutlines.of(found)
 
-    def _mesh_missing(self, voters: dict[int, Voter], threshold: int) -> None:
+    def _mesh_missing(
+        self,
+        voters: dict[int, Voter],
+        threshold: int,
+        before: list[Slab | None],
+        changes: ChangedOutlines | None,
+    ) -> None:
         missing = [number for number, slab in enumerate(self._slabs) if slab is None]
         if not missing:
             return
-        kept = {
-            n: cells for n, cells in self._cells.items() if voters.get(n) is self._voters.get(n)
-        }
-        new = [n for n in voters if n not in kept]
+        new = [n for n in voters if n not in self._cells]
         made = in_parallel(lambda n: cells_of(voters[n], self._volume.grid), new)
-        self._cells = {**kept, **dict(zip(new, made, strict=True))}
+        self._cells.update(zip(new, made, strict=True))
         tables = tables_of(voters, self._cells)
         layers = slab_layers(self._volume.grid)
         votes = self._volume.votes
 
         def work(number: int) -> Slab:
-            return exact_slab(votes, threshold, layers[number], tables)
+            old = before[number]
+            if old is None or changes is None:
+                return exact_slab(votes, threshold, layers[number], tables)
+            return renewed_slab(votes, threshold, layers[number], tables, old, changes)
 
         for number, slab in zip(missing, in_parallel(work, missing), strict=True):
             self._slabs[number] = slab
@@ -164,7 +187,32 @@ def exact_slab(
 ) -> Slab:
     """Return one slab's mesh with every vertex where the hull's boundary is."""
     crossed, faces = mesh_slab(votes, threshold, *layers, triangle_table(), edge_tables())
-    vertices, _ = cross_grid_edges(
+    vertices = _crossings(crossed, votes, threshold, tables)
+    return Slab(vertices=vertices, faces=faces, crossed=crossed, ends=end_votes(crossed, votes))
+
+
+def renewed_slab(
+    votes: Votes,
+    threshold: int,
+    layers: tuple[int, int],
+    tables: CrossingTables,
+    old: Slab,
+    changes: ChangedOutlines,
+) -> Slab:
+    """Return what `exact_slab` does, but search only the crossings that are not as in `old`."""
+    crossed, faces = mesh_slab(votes, threshold, *layers, triangle_table(), edge_tables())
+    ends = end_votes(crossed, votes)
+    kept = kept_crossings(crossed, ends, old.crossed, old.ends, changes)
+    vertices = old.vertices[kept] if len(old.vertices) else np.empty((len(crossed), 3))
+    sought = np.flatnonzero(kept < 0)
+    vertices[sought] = _crossings(crossed[sought], votes, threshold, tables)
+    return Slab(vertices=vertices, faces=faces, crossed=crossed, ends=ends)
+
+
+def _crossings(
+    crossed: NDArray[np.int32], votes: Votes, threshold: int, tables: CrossingTables
+) -> Floats:
+    vertices: Floats = cross_grid_edges(
         crossed,
         votes,
         threshold,
@@ -173,8 +221,14 @@ def exact_slab(
         tables.cell_maps,
         tables.starts,
         tables.edges,
-    )
-    return Slab(vertices=vertices, faces=faces)
+    )[0]
+    return vertices
+
+
+def _is_near(slab: Slab, changes: ChangedOutlines) -> bool:
+    """Return whether a slab has a vertex near what changed of an outline."""
+    each = zip(changes.to_image, changes.lower, changes.upper, strict=True)
+    return any(any_within(slab.vertices, *change) for change in each)
 
 
 def joined_surface(slabs: list[Slab], grid: VoxelGrid) -> Surface:
