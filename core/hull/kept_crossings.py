@@ -13,42 +13,45 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.arrays import Floats
+from core.hull.edge_cells import EdgeCells
 from core.hull.threads import InnerLoop
+
+OFF_GRID = np.iinfo(np.uint16).max
+"""Stands for the misses of an end outside the grid."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ChangedOutlines:
-    """Where in which images outline edges came or went.
+class ChangedEdges:
+    """Outline edges of one view that came or went, sorted into cells of its image.
 
     Attributes:
-        to_image: (views, 3, 4) from homogeneous voxel indices to the homogeneous image.
-        lower: (views, 2) row and column from which a voxel's image is near a change.
-        upper: (views, 2) row and column up to which it is.
+        to_cell: (3, 4) from homogeneous voxel indices to the homogeneous row and column of a cell.
+        shape: (2,) cells along rows and columns.
+        starts: (cells + 1,) where each cell's edges start; a cell with none has nothing near.
     """
 
-    to_image: Floats
-    lower: Floats
-    upper: Floats
+    to_cell: Floats
+    shape: NDArray[np.int64]
+    starts: NDArray[np.int32]
 
     @classmethod
-    def of(cls, changes: Sequence[tuple[Floats, Floats, Floats]]) -> "ChangedOutlines":
-        """Return changes given as (to_image, lower, upper) one by one."""
-        return cls(
-            to_image=np.array([to_image for to_image, _, _ in changes]).reshape(-1, 3, 4),
-            lower=np.array([lower for _, lower, _ in changes]).reshape(-1, 2),
-            upper=np.array([upper for _, _, upper in changes]).reshape(-1, 2),
-        )
+    def of(cls, cells: EdgeCells, to_image: Floats) -> "ChangedEdges":
+        """Return the edges of `cells`, seen through `to_image` (3 × 4)."""
+        return cls(to_cell=cells.to_cell(to_image), shape=cells.shape, starts=cells.starts)
 
 
-def end_votes(crossed: NDArray[np.int32], votes: NDArray[Any]) -> NDArray[np.uint16]:
-    """Return the votes at the lower and the upper end of grid edges, (edges, 2), 0 off the grid.
+def end_misses(crossed: NDArray[np.int32], votes: NDArray[Any], views: int) -> NDArray[np.uint16]:
+    """Return how many views miss the lower and the upper end of grid edges, (edges, 2).
+
+    Misses and not votes, for a view that sees both ends adds a vote to each and moves nothing.
 
     Args:
         crossed: (edges, 4) as `mesh_slab` returns them.
         votes: (nx, ny, nz).
+        views: that voted.
     """
-    ends = np.zeros((len(crossed), 2), dtype=np.uint16)
-    _read_ends(crossed, votes, ends)
+    ends = np.full((len(crossed), 2), OFF_GRID, dtype=np.uint16)
+    _read_misses(crossed, votes, views, ends)
     return ends
 
 
@@ -57,27 +60,35 @@ def kept_crossings(
     ends: NDArray[np.uint16],
     old_crossed: NDArray[np.int32],
     old_ends: NDArray[np.uint16],
-    changes: ChangedOutlines,
+    changes: Sequence[ChangedEdges],
 ) -> NDArray[np.int64]:
     """Return which old crossing each grid edge keeps, (edges,), −1 where it must be searched.
 
     Args:
         crossed: (edges, 4) as `mesh_slab` returns them, in its order.
-        ends: (edges, 2) of `end_votes`.
+        ends: (edges, 2) of `end_misses`.
         old_crossed: (old edges, 4) the same slab's before.
-        old_ends: (old edges, 2) of `end_votes` before.
+        old_ends: (old edges, 2) of `end_misses` before.
         changes: of all outlines since.
     """
     kept = np.full(len(crossed), -1, dtype=np.int64)
     _match(crossed, ends, old_crossed, old_ends, kept)
-    for to_image, lower, upper in zip(changes.to_image, changes.lower, changes.upper, strict=True):
-        _drop_near(crossed, to_image, lower, upper, kept)
+    for change in changes:
+        _drop_near(crossed, change.to_cell, change.shape, change.starts, kept)
     return kept
 
 
+def any_near(crossed: NDArray[np.int32], changes: Sequence[ChangedEdges]) -> bool:
+    """Return whether any of the grid edges (edges, 4) could cross a changed outline edge."""
+    each = np.zeros(len(crossed), dtype=np.int64)
+    for change in changes:
+        _drop_near(crossed, change.to_cell, change.shape, change.starts, each)
+    return bool(each.any())
+
+
 @numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
-def _read_ends(
-    crossed: NDArray[np.int32], votes: NDArray[Any], ends: NDArray[np.uint16]
+def _read_misses(
+    crossed: NDArray[np.int32], votes: NDArray[Any], views: int, ends: NDArray[np.uint16]
 ) -> None:  # pragma: no cover - compiled
     nx, ny, nz = votes.shape
     for i in range(len(crossed)):
@@ -87,7 +98,7 @@ def _read_ends(
             y = crossed[i, 1] + (end if axis == 1 else 0)
             z = crossed[i, 2] + (end if axis == 2 else 0)
             if 0 <= x < nx and 0 <= y < ny and 0 <= z < nz:
-                ends[i, end] = votes[x, y, z]
+                ends[i, end] = views - votes[x, y, z]
 
 
 @numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
@@ -132,19 +143,23 @@ def _comes_before(
 @numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _drop_near(
     crossed: NDArray[np.int32],
-    to_image: Floats,
-    lower: Floats,
-    upper: Floats,
+    to_cell: Floats,
+    shape: NDArray[np.int64],
+    starts: NDArray[np.int32],
     kept: NDArray[np.int64],
 ) -> None:  # pragma: no cover - compiled
-    """Keep nothing that one image shows between two corners."""
+    """Keep no grid edge whose middle is seen in a cell with edges."""
+    rows, columns = shape[0] - 1.0, shape[1] - 1.0
     for i in range(len(crossed)):
-        x, y, z = float(crossed[i, 0]), float(crossed[i, 1]), float(crossed[i, 2])
-        depth = to_image[2, 0] * x + to_image[2, 1] * y + to_image[2, 2] * z + to_image[2, 3]
-        row = to_image[0, 0] * x + to_image[0, 1] * y + to_image[0, 2] * z + to_image[0, 3]
-        column = to_image[1, 0] * x + to_image[1, 1] * y + to_image[1, 2] * z + to_image[1, 3]
-        if (
-            lower[0] * depth <= row <= upper[0] * depth
-            and lower[1] * depth <= column <= upper[1] * depth
-        ):
+        axis = crossed[i, 3] & 3
+        x = crossed[i, 0] + (0.5 if axis == 0 else 0.0)
+        y = crossed[i, 1] + (0.5 if axis == 1 else 0.0)
+        z = crossed[i, 2] + (0.5 if axis == 2 else 0.0)
+        depth = to_cell[2, 0] * x + to_cell[2, 1] * y + to_cell[2, 2] * z + to_cell[2, 3]
+        row = to_cell[0, 0] * x + to_cell[0, 1] * y + to_cell[0, 2] * z + to_cell[0, 3]
+        column = to_cell[1, 0] * x + to_cell[1, 1] * y + to_cell[1, 2] * z + to_cell[1, 3]
+        # A rim cell, without edges, stands for all beyond.
+        row, column = min(max(row / depth, 0.0), rows), min(max(column / depth, 0.0), columns)
+        cell = int(row) * shape[1] + int(column)
+        if starts[cell] != starts[cell + 1]:
             kept[i] = -1

@@ -4,7 +4,7 @@ Marching cubes finds which grid edges the hull's boundary crosses; each vertex i
 its grid edge to where the boundary really is.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,10 +14,11 @@ from core.arrays import Floats
 from core.geometry.grid import VoxelGrid
 from core.hull.changes import changed_edges
 from core.hull.closed_mesh import Surface
-from core.hull.crossings import CrossingTables, any_within, cross_grid_edges
+from core.hull.crossings import CrossingTables, cross_grid_edges
 from core.hull.cube_cases import edge_tables, triangle_table
-from core.hull.edge_cells import EdgeCells, longest_grid_edge_px
-from core.hull.kept_crossings import ChangedOutlines, end_votes, kept_crossings
+from core.hull.edge_cells import EdgeCells
+from core.hull.kept_crossings import ChangedEdges, any_near, end_misses, kept_crossings
+from core.hull.outline import Outline
 from core.hull.slab_mesh import mesh_slab
 from core.hull.threads import in_parallel
 from core.hull.votes import Voter, Votes, VoteVolume
@@ -33,7 +34,7 @@ class Slab:
         vertices: (vertices, 3) in voxel indices, one on each crossed grid edge.
         faces: (faces, 3) numbers of this slab's vertices, continued into the next slab's.
         crossed: (vertices, 4) the grid edges, as `mesh_slab` returns them.
-        ends: (vertices, 2) votes at their ends.
+        ends: (vertices, 2) views that miss their ends, as `end_misses` returns them.
     """
 
     vertices: Floats
@@ -52,10 +53,11 @@ class SurfaceMesher:
     def __init__(self, volume: VoteVolume) -> None:
         """Watch a volume; nothing is meshed yet."""
         self._volume = volume
+        self._grid = volume.grid
         self._slabs: list[Slab | None] = [None] * len(slab_layers(volume.grid))
         self._voters: dict[int, Voter] = {}
         self._cells: dict[int, EdgeCells] = {}
-        self._threshold = 0
+        self._tolerance = -1
         self._revision = -1
 
     def surface(self) -> Surface:
@@ -68,65 +70,71 @@ class SurfaceMesher:
             threshold = self._volume.checked_threshold(self._volume.threshold)
             voters = voting(self._volume)
             before = list(self._slabs)
+            changes = self._changes(voters, len(voters) - threshold)
+            self._forget_changed(changes)
             # Also where no slab is meshed again now: a later edit will ask for them.
             for number in [n for n in self._cells if voters.get(n) is not self._voters.get(n)]:
                 del self._cells[number]
-            changes = self._forget_changed(voters, threshold)
             self._mesh_missing(voters, threshold, before, changes)
-            self._voters, self._threshold = voters, threshold
+            self._voters, self._tolerance = voters, len(voters) - threshold
             self._revision = self._volume.revision
-        return joined_surface([slab for slab in self._slabs if slab], self._volume.grid)
+            slabs = [slab for slab in self._slabs if slab]
+        return joined_surface(slabs, self._grid)
 
-    def _forget_changed(self, voters: dict[int, Voter], threshold: int) -> ChangedOutlines | None:
-        """Drop the slabs that the changes since the last surface could have touched.
-
-        Returns:
-            What changed of the outlines; None when anything may have changed anywhere.
-        """
-        changes = self._changes(voters, threshold)
-        if changes is None:
-            self._slabs = [None] * len(self._slabs)
+    def _changes(self, voters: dict[int, Voter], tolerance: int) -> list[ChangedEdges] | None:
+        """Return the outline edges that came or went, None if more or fewer misses count now."""
+        if tolerance != self._tolerance:
             return None
-        flipped = self._volume.planes_changed_since(self._revision)
-        for number, (first, last) in enumerate(slab_layers(self._volume.grid)):
-            slab = self._slabs[number]
-            if flipped[max(first, 0) : last + 1].any() or (slab and _is_near(slab, changes)):
-                self._slabs[number] = None
+        changes = []
+        for number in voters.keys() | self._voters.keys():
+            old, new = self._voters.get(number), voters.get(number)
+            if old is not new:
+                changes += self._view_changes(number, old, new)
         return changes
 
-    def _changes(self, voters: dict[int, Voter], threshold: int) -> ChangedOutlines | None:
-        """Return what changed of the outlines, None if views or threshold are others."""
-        if voters.keys() != self._voters.keys() or threshold != self._threshold:
-            return None
-        found = []
-        for number, new in voters.items():
-            old = self._voters[number]
-            if new is old:
-                continue
-            if not np.array_equal(old.to_image, new.to_image):
-                return None
-            points = changed_edges(old.outline, new.outline)[0]
-            if len(points):
-                reach = longest_grid_edge_px(new.to_image, self._volume.grid)
-                lower, upper = points.min(axis=0) - reach, points.max(axis=0) + reach
-                found.append((new.to_image, lower, upper))
-        return ChangedOutlines.of(found)
+    def _view_changes(
+        self, number: int, old: Voter | None, new: Voter | None
+    ) -> list[ChangedEdges]:
+        """Return a view's edges that came or went: all of them if it moved, came or went itself."""
+        if old and new and np.array_equal(old.to_image, new.to_image):
+            points, offsets, _ = changed_edges(old.outline, new.outline)
+            cells = EdgeCells.of(Outline(points=points, offsets=offsets), new.to_image, self._grid)
+            return [ChangedEdges.of(cells, new.to_image)]
+        changes = []
+        if old:
+            changes.append(ChangedEdges.of(self._cells[number], old.to_image))
+        if new:
+            changes.append(ChangedEdges.of(cells_of(new, self._grid), new.to_image))
+        return changes
+
+    def _forget_changed(self, changes: list[ChangedEdges] | None) -> None:
+        """Drop the slabs that the changes since the last surface could have touched."""
+        if changes is None:
+            self._slabs = [None] * len(self._slabs)
+            return
+        flipped = self._volume.planes_changed_since(self._revision)
+        for number, (first, last) in enumerate(slab_layers(self._grid)):
+            slab = self._slabs[number]
+            if flipped[max(first, 0) : last + 1].any() or (
+                slab is not None and any_near(slab.crossed, changes)
+            ):
+                self._slabs[number] = None
 
     def _mesh_missing(
         self,
         voters: dict[int, Voter],
         threshold: int,
         before: list[Slab | None],
-        changes: ChangedOutlines | None,
+        changes: list[ChangedEdges] | None,
     ) -> None:
         missing = [number for number, slab in enumerate(self._slabs) if slab is None]
         if not missing:
             return
         new = [n for n in voters if n not in self._cells]
-        made = in_parallel(lambda n: cells_of(voters[n], self._volume.grid), new)
+        made = in_parallel(lambda n: cells_of(voters[n], self._grid), new)
         self._cells.update(zip(new, made, strict=True))
         tables = tables_of(voters, self._cells)
-        layers = slab_layers(self._volume.grid)
+        layers = slab_layers(self._grid)
         votes = self._volume.votes
 
         def work(number: int) -> Slab:
@@ -188,7 +196,9 @@ def exact_slab(
     """Return one slab's mesh with every vertex where the hull's boundary is."""
     crossed, faces = mesh_slab(votes, threshold, *layers, triangle_table(), edge_tables())
     vertices = _crossings(crossed, votes, threshold, tables)
-    return Slab(vertices=vertices, faces=faces, crossed=crossed, ends=end_votes(crossed, votes))
+    return Slab(
+        vertices=vertices, faces=faces, crossed=crossed, ends=_misses(crossed, votes, tables)
+    )
 
 
 def renewed_slab(
@@ -197,11 +207,11 @@ def renewed_slab(
     layers: tuple[int, int],
     tables: CrossingTables,
     old: Slab,
-    changes: ChangedOutlines,
+    changes: Sequence[ChangedEdges],
 ) -> Slab:
     """Return what `exact_slab` does, but search only the crossings that are not as in `old`."""
     crossed, faces = mesh_slab(votes, threshold, *layers, triangle_table(), edge_tables())
-    ends = end_votes(crossed, votes)
+    ends = _misses(crossed, votes, tables)
     kept = kept_crossings(crossed, ends, old.crossed, old.ends, changes)
     vertices = old.vertices[kept] if len(old.vertices) else np.empty((len(crossed), 3))
     sought = np.flatnonzero(kept < 0)
@@ -225,10 +235,8 @@ def _crossings(
     return vertices
 
 
-def _is_near(slab: Slab, changes: ChangedOutlines) -> bool:
-    """Return whether a slab has a vertex near what changed of an outline."""
-    each = zip(changes.to_image, changes.lower, changes.upper, strict=True)
-    return any(any_within(slab.vertices, *change) for change in each)
+def _misses(crossed: NDArray[np.int32], votes: Votes, tables: CrossingTables) -> NDArray[np.uint16]:
+    return end_misses(crossed, votes, len(tables.to_image))
 
 
 def joined_surface(slabs: list[Slab], grid: VoxelGrid) -> Surface:
