@@ -1,6 +1,6 @@
 """Surface scatterers: the fast diffuse model of what the radar sees."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import finufft
 import numpy as np
@@ -43,6 +43,10 @@ class Scatterers:
         object.__setattr__(self, "normal", frozen(self.normal, np.float64, (count, 3), "Normals"))
         reflectivity = frozen(self.reflectivity, np.complex128, (count,), "Reflectivities")
         object.__setattr__(self, "reflectivity", reflectivity)
+
+    def scaled(self, factor: float) -> "Scatterers":
+        """Return the same points with amplitudes times a factor."""
+        return replace(self, reflectivity=self.reflectivity * factor)
 
     def reach_m(self) -> float:
         """Return how far from the origin the farthest point lies."""
