@@ -9,9 +9,9 @@ from core.radar.backprojection import backproject
 from core.radar.echoes import simulate_echoes
 from core.radar.imaging import ImagingSettings, frames
 from core.radar.phase_history import PhaseHistory
+from core.radar.reflectors import square_plate
 from core.radar.scatterers import Scatterers
 from core.radar.waveform import SPEED_OF_LIGHT_M_PER_S, Waveform
-from tests.radar.shapes import plate
 from tests.radar.test_imaging import half_power_width_px, peak
 
 WAVEFORM = Waveform()
@@ -72,7 +72,7 @@ def test_simulated_echoes_are_those_of_both_ways():
         position_m=POINTS_M[:1],
         normal=-sender.line_of_sight[300:301],
         reflectivity=np.ones(1),
-        mesh=plate(0.01),
+        mesh=square_plate(0.01),
     )
     simulated = simulate_echoes(
         point,

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.radar.bouncing_rays import bounce_points
-from tests.radar.shapes import dihedral, plate, trihedral
+from core.radar.reflectors import dihedral, square_plate, trihedral
 
 WAVELENGTH_M = 0.03
 
@@ -31,7 +31,7 @@ def test_a_dihedral_returns_the_textbook_section(side_m, length_m):
 
 
 def test_a_trihedral_returns_the_textbook_section_after_three_bounces():
-    shape, toward = trihedral(), unit(-1, -1, -1)
+    shape, toward = trihedral(1.0), unit(-1, -1, -1)
     points = bounce_points(shape, toward, wavelength_m=WAVELENGTH_M, tube_m=0.02)
     section = 4 * np.pi / (3 * WAVELENGTH_M**2)
     assert 10 * np.log10(abs(summed(points, toward)) ** 2 / section) == pytest.approx(0, abs=0.2)
@@ -46,14 +46,14 @@ def test_paths_are_as_long_from_anywhere_near_as_rays_traced_from_there(seed):
     random = np.random.default_rng(seed)
     toward = unit(*(-1 + random.uniform(-0.1, 0.1, 3)))
     other = unit(*(toward + random.normal(size=3) * 0.003))
-    here = bounce_points(trihedral(), toward, wavelength_m=WAVELENGTH_M, tube_m=0.02)
-    there = bounce_points(trihedral(), other, wavelength_m=WAVELENGTH_M, tube_m=0.02)
+    here = bounce_points(trihedral(1.0), toward, wavelength_m=WAVELENGTH_M, tube_m=0.02)
+    there = bounce_points(trihedral(1.0), other, wavelength_m=WAVELENGTH_M, tube_m=0.02)
     three = [summed(points, other) for points in (here, there)]
     assert abs(three[0] - three[1]) < 0.05 * abs(three[1])
 
 
 def test_the_polarisation_turns_over_in_a_dihedral_at_half_a_right_angle():
-    shape, toward = dihedral(), unit(-1, -1, 0)
+    shape, toward = dihedral(1.0, 1.0), unit(-1, -1, 0)
     amplitude = [
         summed(
             bounce_points(
@@ -72,19 +72,19 @@ def test_the_polarisation_turns_over_in_a_dihedral_at_half_a_right_angle():
 
 
 def test_a_convex_body_has_no_second_bounce():
-    for shape in (trimesh.creation.icosphere(subdivisions=3), plate()):
+    for shape in (trimesh.creation.icosphere(subdivisions=3), square_plate(1.0)):
         points = bounce_points(shape, unit(1, 2, -3), wavelength_m=WAVELENGTH_M, tube_m=0.03)
         assert len(points.amplitude) == 0
 
 
 def test_what_a_wall_hides_from_the_radar_returns_nothing():
     """A dihedral behind a wall with a slit: rays get in at one mirror only, out by none."""
-    open_points = bounce_points(dihedral(), unit(-1, -1, 0), wavelength_m=0.03, tube_m=0.02)
+    open_points = bounce_points(dihedral(1.0, 1.0), unit(-1, -1, 0), wavelength_m=0.03, tube_m=0.02)
     wall = trimesh.creation.box((0.02, 0.45, 1.2))
     wall.apply_translation([0, 0.45, 0])
     wall.apply_transform(trimesh.geometry.align_vectors([1, 0, 0], [1, 1, 0]))
     wall.apply_translation([1.2, 1.2, 0])
-    both = trimesh.util.concatenate([dihedral(), wall])
+    both = trimesh.util.concatenate([dihedral(1.0, 1.0), wall])
     points = bounce_points(both, unit(-1, -1, 0), wavelength_m=0.03, tube_m=0.02)
     first = points.position_m[points.bounces == 2]
     assert 0 < len(first) < 0.6 * len(open_points.amplitude)
@@ -93,7 +93,7 @@ def test_what_a_wall_hides_from_the_radar_returns_nothing():
 def test_each_reflection_keeps_its_share():
     whole, half = (
         bounce_points(
-            trihedral(), unit(-1, -1, -1), wavelength_m=0.03, tube_m=0.05, reflection=share
+            trihedral(1.0), unit(-1, -1, -1), wavelength_m=0.03, tube_m=0.05, reflection=share
         )
         for share in (1.0, 0.5)
     )
@@ -112,4 +112,4 @@ def test_each_reflection_keeps_its_share():
 def test_what_cannot_be_traced_is_refused(options, wanted):
     chosen = {"wavelength_m": 0.03, "tube_m": 0.05, **options}
     with pytest.raises(ValueError, match=wanted):
-        bounce_points(trihedral(), unit(-1, -1, -1), **chosen)
+        bounce_points(trihedral(1.0), unit(-1, -1, -1), **chosen)

@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 
 from core.radar.facets import Facets, shaded_surface
 from core.radar.physical_optics import physical_optics
+from core.radar.reflectors import square_plate
 from core.radar.waveform import SPEED_OF_LIGHT_M_PER_S
 from core.targets import Target
-from tests.radar.shapes import mesh, plate
 
 WAVELENGTH_M = 0.03
 FREQUENCY_HZ = SPEED_OF_LIGHT_M_PER_S / WAVELENGTH_M * np.linspace(0.97, 1.03, 9)
@@ -46,7 +46,7 @@ def by_quadrature(corners_m, normal, direction, frequency_hz, parts):
 def test_the_closed_form_equals_the_quadrature_at_the_flash_and_away(seed, tilt_rad, size_m, scale):
     random = np.random.default_rng(seed)
     corners = random.uniform(-size_m, size_m, (3, 3)) + random.uniform(-3, 3, 3)
-    facet = mesh(corners, [[0, 1, 2]])
+    facet = trimesh.Trimesh(corners, [[0, 1, 2]], process=False)
     normal = facet.face_normals[0]
     assume(facet.area > 0.05 * size_m**2)
     side = (
@@ -67,7 +67,7 @@ def test_a_square_plate_has_the_textbook_pattern_to_the_third_sidelobe():
     side, wavelength = 1.0, WAVELENGTH_M
     angle = np.linspace(0, 3.9 * wavelength / (2 * side), 200)
     direction = np.stack([-np.sin(angle), 0 * angle, -np.cos(angle)], axis=1)
-    middle = physical_optics(lit(plate(side)), direction, FREQUENCY_HZ)[:, 4]
+    middle = physical_optics(lit(square_plate(side)), direction, FREQUENCY_HZ)[:, 4]
     sections = np.abs(middle) ** 2
     normal = 4 * np.pi * side**4 / wavelength**2
     assert 10 * np.log10(sections[0] / normal) == pytest.approx(0, abs=0.1)
@@ -80,14 +80,14 @@ def test_a_square_plate_has_the_textbook_pattern_to_the_third_sidelobe():
 def test_two_halves_are_a_whole():
     direction = -np.array([[0.3, 0.2, 0.9], [0.0, 0.0, 1.0], [0.01, 0.0, 1.0]])
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
-    target = Target(name="plate", parts=(plate(),))
+    target = Target(name="plate", parts=(square_plate(1.0),))
     pieces = shaded_surface(target, longest_edge_m=0.2)
     cut = Facets(
         corners_m=pieces.piece_corners_m,
         normal=pieces.mesh.face_normals[pieces.face],
         share=np.ones(len(pieces.face)),
     )
-    whole = physical_optics(lit(plate()), direction, FREQUENCY_HZ)
+    whole = physical_optics(lit(square_plate(1.0)), direction, FREQUENCY_HZ)
     again = physical_optics(cut, direction, FREQUENCY_HZ)
     assert np.abs(again - whole).max() < 2e-5 * np.abs(whole).max()
 
@@ -107,7 +107,9 @@ def test_a_sphere_returns_its_cross_section_and_shows_only_its_near_side():
 
 
 def test_what_faces_away_returns_nothing():
-    assert not physical_optics(lit(plate()), np.array([[0.0, 0.6, 0.8]]), FREQUENCY_HZ).any()
+    assert not physical_optics(
+        lit(square_plate(1.0)), np.array([[0.0, 0.6, 0.8]]), FREQUENCY_HZ
+    ).any()
 
 
 def test_the_mean_over_all_aspects_is_a_quarter_of_the_surface():

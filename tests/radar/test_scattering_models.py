@@ -5,11 +5,11 @@ import trimesh
 from core.geometry.track import track_from_angles
 from core.radar.echoes import simulate_echoes
 from core.radar.facets import shaded_surface
+from core.radar.reflectors import dihedral, square_plate
 from core.radar.scatterers import surface_scatterers
 from core.radar.scattering_models import ConductingSurface, Mixture, scattering_model
 from core.radar.waveform import Waveform
 from core.targets import Target
-from tests.radar.shapes import dihedral, plate
 
 WAVEFORM = Waveform(frequency_count=64)
 BOX = Target(name="box", parts=(trimesh.creation.box((1.0, 2.0, 3.0)),))
@@ -76,7 +76,7 @@ def test_away_from_all_flashes_roughness_carries_the_mixture():
 
 
 def test_a_mirror_flashes_with_its_textbook_section_in_simulated_echoes():
-    target = Target(name="plate", parts=(plate(0.5),))
+    target = Target(name="plate", parts=(square_plate(0.5),))
     angle = np.linspace(-0.03, 0.03, 31)
     track = track_from_angles(np.arange(31) / 100, -np.pi / 2 + angle - angle[0], 0 * angle)
     echoes = simulate_echoes(
