@@ -127,6 +127,12 @@ def test_models_that_cannot_be_are_refused(make, wanted):
         make()
 
 
+def test_what_shows_its_back_only_returns_nothing():
+    mirror = model("physical-optics", Target(name="plate", parts=(square_plate(0.5),)))
+    from_behind = np.array([[0.0, 0.6, 0.8], [0.0, 0.59, 0.81]])
+    assert not mirror.echoes(from_behind, WAVEFORM.frequencies_hz()).any()
+
+
 def test_points_can_be_scaled():
     points = surface_scatterers(BOX, count=10, random=np.random.default_rng(0))
     assert points.scaled(0.5).mean_echo_power() == pytest.approx(points.mean_echo_power() / 4)
