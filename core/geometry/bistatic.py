@@ -14,7 +14,9 @@ def bistatic_track(transmitter: LineOfSightTrack, receiver: LineOfSightTrack) ->
 
     A far point at p delays a pulse by (k_t + k_r)·p / c, and k_t + k_r is 2 cos(β/2) times the
     unit vector between both, where β is the bistatic angle. So the bisector is the line of sight
-    and every frequency counts cos(β/2) times: from here on nothing knows of two radars.
+    and every frequency counts cos(β/2) times: from here on nothing knows of two radars. The
+    delays are exact; that the strengths are a single radar's too holds for single reflections and
+    angles at which both radars see the same side of the target.
 
     Args:
         transmitter: lines of sight from the transmitter to the target.

@@ -74,10 +74,12 @@ class ConductingSurface:
         if self.most_bounces < 2:
             return single
         middle_hz = float(np.mean(frequency_hz))
+        # A pair's frequencies count cos(β/2) times, here as in the phases.
+        scale = float(np.linalg.norm(direction[len(direction) // 2]))
         bounced = bounce_points(
             self.surface.mesh,
             line_of_sight,
-            wavelength_m=SPEED_OF_LIGHT_M_PER_S / middle_hz,
+            wavelength_m=SPEED_OF_LIGHT_M_PER_S / (middle_hz * scale),
             tube_m=self.tube_m,
             most_bounces=self.most_bounces,
             reflection=self.reflection,
