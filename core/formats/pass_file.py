@@ -30,7 +30,12 @@ FORMAT = "radarhull pass"
 SCHEMA_VERSION = 1
 
 _TRACK_REQUIRED = {"time_s": "s", "line_of_sight": "1", "line_of_sight_rate_per_s": "1/s"}
-_TRACK_OPTIONAL = {"range_m": "m", "azimuth_rad": "rad", "elevation_rad": "rad"}
+_TRACK_OPTIONAL = {
+    "range_m": "m",
+    "azimuth_rad": "rad",
+    "elevation_rad": "rad",
+    "bisector_scale": "1",
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -46,14 +46,13 @@ def backproject(history: PhaseHistory, points_m: Floats) -> NDArray[np.complex64
     flat = np.ascontiguousarray(points.reshape(-1, 3))
     profiles, cell_m = _range_profiles(history)
     range_m = np.full(len(track), np.inf) if track.range_m is None else track.range_m
-    wavenumber = 4 * np.pi / history.wavelength_m
+    wavenumber = 4 * np.pi / SPEED_OF_LIGHT_M_PER_S * float(history.frequency_hz.mean())
+    direction = track.phase_direction()
     image = np.zeros(len(flat), dtype=np.complex128)
 
     def add_block(start: int) -> None:
         where = slice(start, start + BLOCK_POINTS)
-        _accumulate(
-            profiles, cell_m, wavenumber, track.line_of_sight, range_m, flat[where], image[where]
-        )
+        _accumulate(profiles, cell_m, wavenumber, direction, range_m, flat[where], image[where])
 
     with ThreadPoolExecutor(WORKERS) as pool:
         list(pool.map(add_block, range(0, len(flat), BLOCK_POINTS)))

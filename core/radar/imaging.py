@@ -103,7 +103,7 @@ def polar_format_frame(
     turn = accumulated_turn_rad(line_of_sight)
     _check_unambiguous(history, turn, settings)
     wavenumber = 4 * np.pi / SPEED_OF_LIGHT_M_PER_S * history.frequency_hz
-    in_plane = line_of_sight @ axes.T
+    in_plane = track.phase_direction()[pulses] @ axes.T
     weights = hamming(turn / turn[-1])[:, None] * hamming(np.linspace(0, 1, len(wavenumber)))
     image = finufft.nufft2d1(
         ((np.outer(in_plane[:, 0], wavenumber) - wavenumber.mean()) * settings.pixel_spacing_m)

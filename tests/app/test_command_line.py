@@ -105,6 +105,13 @@ def test_what_is_not_understood_is_said_in_one_line(capsys, words, wanted):
         ("--snr-db nan", "--snr-db wants decibels"),
         ("--snr-db -100000", "--snr-db wants decibels"),
         ("--seed -1", "--seed wants a whole number from 0 on"),
+        ("--carrier-hz 0", "must be a positive frequency in hertz, got 0"),
+        ("--model mixed --roughness 1.2", "0 to 1; got 1.2"),
+        ("--model physical-optics --bounces 0", "at least 1 bounces"),
+        ("--scatterers 0", "At least 1 scatterer"),
+        ("--phase-error-rad -0.1", "--phase-error-rad wants an rms error"),
+        ("--range-error-m inf", "--range-error-m wants an rms error"),
+        ("--range-drift-m nan", "--range-drift-m wants metres"),
         ("--json /nonexistent/facts.json", "no folder /nonexistent"),
     ],
 )
@@ -283,6 +290,23 @@ def test_a_simulation_is_summarised_for_machines(capsys, tmp_path):
     assert (told["pulses"], told["frequencies"]) == history.samples.shape
     assert history.samples.shape[1] == 192
     assert told["epoch_utc"] == history.track.epoch_utc
+
+
+def test_a_pass_of_a_mirror_is_simulated_with_errors(capsys, tmp_path):
+    words = ("--mask-deg", 42.0, "--frequency-count", 192, "--model", "mixed", "--prf-hz", 5)
+    rough = ("--roughness", 0.2, "--scatterers", 500, "--bounces", 1)
+    clean, shaken = tmp_path / "clean.h5", tmp_path / "shaken.h5"
+    told = json.loads(run(capsys, "simulate", clean, *words, *rough, "--json", "-"))
+    assert (told["model"], told["roughness"], told["bounces"]) == ("mixed", 0.2, 1)
+    run(capsys, "simulate", shaken, *words, *rough, "--phase-error-rad", 0.5, "--range-drift-m", 1)
+    before, after = (read_pass(path).history for path in (clean, shaken))
+    turn = np.angle(after.samples / before.samples)
+    wavenumber = 4 * np.pi / 299_792_458.0 * before.frequency_hz
+    drift = np.linspace(-1, 1, len(turn)) ** 2
+    phase = np.exp(1j * (turn + np.outer(drift, wavenumber)))
+    # What the drift leaves is one random phase per pulse.
+    assert np.abs(phase - phase[:, :1]).max() < 1e-3
+    assert np.std(np.angle(phase[:, 0])) == pytest.approx(0.5, rel=0.3)
 
 
 def test_a_port_in_use_is_named(capsys):
