@@ -18,7 +18,7 @@ from core.benchmarks.measuring import (
 from core.benchmarks.workload import Task, satellite_task
 from core.experiments.results import Figure, Results, Table
 from core.hull.surface import Surface, hull_surface
-from core.hull.votes import VoteVolume
+from core.hull.volume import VoteVolume
 
 SIZES = ((64, 60), (128, 60), (256, 60), (512, 60))
 VIEWS = (15, 30, 60, 120, 240)

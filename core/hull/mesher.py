@@ -21,7 +21,7 @@ from core.hull.kept_crossings import ChangedEdges, any_near, end_misses, kept_cr
 from core.hull.outline import Outline
 from core.hull.slab_mesh import mesh_slab
 from core.hull.threads import in_parallel
-from core.hull.votes import Voter, Votes, VoteVolume
+from core.hull.votes import VoteCounts, Voter, Votes
 
 SLAB_PLANES = 8
 
@@ -50,7 +50,7 @@ class SurfaceMesher:
     equals meshing from scratch, number by number.
     """
 
-    def __init__(self, volume: VoteVolume) -> None:
+    def __init__(self, volume: VoteCounts) -> None:
         """Watch a volume; nothing is meshed yet."""
         self._volume = volume
         self._grid = volume.grid
@@ -147,7 +147,7 @@ class SurfaceMesher:
             self._slabs[number] = slab
 
 
-def meshed(volume: VoteVolume, threshold: int | None = None) -> Surface:
+def meshed(volume: VoteCounts, threshold: int | None = None) -> Surface:
     """Return the exact surface from scratch, by default at the volume's own threshold.
 
     Raises:
@@ -171,7 +171,7 @@ def slab_layers(grid: VoxelGrid) -> list[tuple[int, int]]:
     return [(start, min(start + SLAB_PLANES, grid.shape[0])) for start in starts]
 
 
-def voting(volume: VoteVolume) -> dict[int, Voter]:
+def voting(volume: VoteCounts) -> dict[int, Voter]:
     """Return the views of a volume that vote, by number."""
     return {number: voter for number, voter in volume.voters.items() if voter.votes}
 

@@ -9,7 +9,7 @@ from core.hull.mesher import SurfaceMesher
 from core.hull.reprojection import reprojected_mask
 from core.hull.surface import hull_surface
 from core.hull.view import View
-from core.hull.votes import VoteVolume
+from core.hull.volume import VoteVolume
 from core.silhouettes.silhouette import Silhouette
 
 GRID = VoxelGrid.cube(side_m=8.0, spacing_m=0.25)
