@@ -12,7 +12,7 @@ from core.geometry.projection import range_doppler_projection
 from core.geometry.track import accumulated_turn_rad
 from core.radar.phase_history import PhaseHistory
 from core.radar.waveform import SPEED_OF_LIGHT_M_PER_S
-from core.radar.window import HALF_POWER_WIDTH_CELLS, hamming
+from core.radar.window import HAMMING
 
 OVERSAMPLING = 16
 """Samples of a range profile per Rayleigh cell; linear interpolation errs by at most 0.5 %."""
@@ -101,10 +101,10 @@ def backprojected_frame(
         line_of_sight=track.line_of_sight[middle],
         row_spacing_m=row_spacing_m,
         column_spacing_m=column_spacing_m,
-        row_resolution_m=HALF_POWER_WIDTH_CELLS
+        row_resolution_m=HAMMING.half_power_width_cells
         * SPEED_OF_LIGHT_M_PER_S
         / (2 * history.bandwidth_hz),
-        column_resolution_m=HALF_POWER_WIDTH_CELLS * history.wavelength_m / (2 * turn_rad),
+        column_resolution_m=HAMMING.half_power_width_cells * history.wavelength_m / (2 * turn_rad),
         label=label,
     )
 
@@ -116,7 +116,7 @@ def _range_profiles(history: PhaseHistory) -> tuple[NDArray[np.complex64], float
     """
     turn = accumulated_turn_rad(history.track.line_of_sight)
     count = len(history.frequency_hz)
-    weights = hamming(turn / turn[-1])[:, None] * hamming(np.linspace(0, 1, count))
+    weights = HAMMING.weights(turn / turn[-1])[:, None] * HAMMING.weights(np.linspace(0, 1, count))
     cells = OVERSAMPLING * 2 ** int(np.ceil(np.log2(count)))
     spectrum = np.fft.ifft(history.samples * (weights / weights.sum()), cells, axis=1)
     place = np.arange(cells) - cells // 2

@@ -13,7 +13,7 @@ from core.geometry.track import accumulated_turn_rad
 from core.radar.intervals import CoherentInterval, divide
 from core.radar.phase_history import PhaseHistory
 from core.radar.waveform import SPEED_OF_LIGHT_M_PER_S
-from core.radar.window import HALF_POWER_WIDTH_CELLS, hamming
+from core.radar.window import HAMMING
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,7 +104,9 @@ def polar_format_frame(
     _check_unambiguous(history, turn, settings)
     wavenumber = 4 * np.pi / SPEED_OF_LIGHT_M_PER_S * history.frequency_hz
     in_plane = line_of_sight @ axes.T
-    weights = hamming(turn / turn[-1])[:, None] * hamming(np.linspace(0, 1, len(wavenumber)))
+    weights = HAMMING.weights(turn / turn[-1])[:, None] * HAMMING.weights(
+        np.linspace(0, 1, len(wavenumber))
+    )
     image = finufft.nufft2d1(
         ((np.outer(in_plane[:, 0], wavenumber) - wavenumber.mean()) * settings.pixel_spacing_m)
         .ravel()
@@ -127,10 +129,12 @@ def polar_format_frame(
         line_of_sight=range_axis,
         row_spacing_m=settings.pixel_spacing_m,
         column_spacing_m=settings.pixel_spacing_m,
-        row_resolution_m=HALF_POWER_WIDTH_CELLS
+        row_resolution_m=HAMMING.half_power_width_cells
         * SPEED_OF_LIGHT_M_PER_S
         / (2 * history.bandwidth_hz),
-        column_resolution_m=HALF_POWER_WIDTH_CELLS * history.wavelength_m / (2 * interval.turn_rad),
+        column_resolution_m=HAMMING.half_power_width_cells
+        * history.wavelength_m
+        / (2 * interval.turn_rad),
     )
 
 

@@ -5,7 +5,7 @@ from core.geometry.track import LineOfSightTrack, accumulated_turn_rad
 from core.radar.backprojection import backproject, backprojected_frame
 from core.radar.phase_history import PhaseHistory
 from core.radar.waveform import SPEED_OF_LIGHT_M_PER_S
-from core.radar.window import hamming
+from core.radar.window import HAMMING
 
 FREQUENCY_HZ = np.linspace(9.3e9, 9.9e9, 128)
 
@@ -54,7 +54,9 @@ def test_it_is_the_matched_sum_over_all_samples(range_m):
     history = _history(track, random.uniform(-5, 5, (4, 3)), random.normal(size=4))
     points_m = random.uniform(-6, 6, (40, 3))
     turn = accumulated_turn_rad(track.line_of_sight)
-    weights = hamming(turn / turn[-1])[:, None] * hamming(np.linspace(0, 1, len(FREQUENCY_HZ)))
+    weights = HAMMING.weights(turn / turn[-1])[:, None] * HAMMING.weights(
+        np.linspace(0, 1, len(FREQUENCY_HZ))
+    )
     wavenumber = 4 * np.pi / SPEED_OF_LIGHT_M_PER_S * FREQUENCY_HZ
     matched = np.exp(1j * _range_beyond_origin_m(track, points_m).T[..., None] * wavenumber)
     wanted = (matched * (weights * history.samples)).sum(axis=(1, 2)) / weights.sum()

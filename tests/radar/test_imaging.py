@@ -5,9 +5,10 @@ from hypothesis import strategies as st
 
 from core.geometry.track import random_views_track, track_from_angles
 from core.radar.echoes import point_echoes
-from core.radar.imaging import ImagingSettings, frame_count, frames, hamming
+from core.radar.imaging import ImagingSettings, frame_count, frames
 from core.radar.phase_history import PhaseHistory
 from core.radar.waveform import SPEED_OF_LIGHT_M_PER_S, Waveform
+from core.radar.window import HAMMING
 
 WAVEFORM = Waveform()
 SETTINGS = ImagingSettings()
@@ -92,7 +93,9 @@ def test_the_image_equals_the_direct_sum():
     axes = frame.projection.matrix[:, :3] * 0.15
     wavenumber = 4 * np.pi / SPEED_OF_LIGHT_M_PER_S * history.frequency_hz
     in_plane = track.line_of_sight @ axes.T
-    weights = hamming(np.linspace(0, 1, 40))[:, None] * hamming(np.linspace(0, 1, 256))
+    weights = HAMMING.weights(np.linspace(0, 1, 40))[:, None] * HAMMING.weights(
+        np.linspace(0, 1, 256)
+    )
     place = (np.arange(32) - 16) * 0.15
     vectors = in_plane[:, :, None] * wavenumber
     rows = np.exp(1j * np.multiply.outer(place, vectors[:, 0]))
