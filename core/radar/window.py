@@ -33,18 +33,17 @@ class Window:
     def weights(self, position: Floats) -> Floats:
         """Return the window at positions 0 … 1 across the aperture; its mean is 1."""
         turn = 2 * np.pi * (np.asarray(position) - 0.5)
-        weights: Floats = 1 + 2 * sum(
-            factor * np.cos(order * turn) for order, factor in enumerate(self.coefficients, 1)
-        )
+        weights = np.ones_like(turn)
+        for order, factor in enumerate(self.coefficients, 1):
+            weights += 2 * factor * np.cos(order * turn)
         return weights
 
     def point_response(self, place_cells: Floats | float) -> Floats:
         """Return the response's amplitude, 1 at its peak, `place_cells` Rayleigh cells from it."""
         place = np.asarray(place_cells, dtype=np.float64)
-        response: Floats = np.sinc(place) + sum(
-            factor * (np.sinc(place - order) + np.sinc(place + order))
-            for order, factor in enumerate(self.coefficients, 1)
-        )
+        response: Floats = np.sinc(place)
+        for order, factor in enumerate(self.coefficients, 1):
+            response = response + factor * (np.sinc(place - order) + np.sinc(place + order))
         return response
 
     @property
