@@ -1,7 +1,6 @@
 """The built-in demo: three passes of a Tiangong-1-like laboratory over Beijing."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 import numpy as np
@@ -18,7 +17,7 @@ from core.geometry.orbit import (
 from core.geometry.track import LineOfSightTrack
 from core.parallel import in_order
 from core.radar.echoes import simulate_echoes
-from core.radar.imaging import ImagingSettings, polar_format_frame
+from core.radar.imaging import ImagingSettings, interval_frame
 from core.radar.intervals import CoherentInterval, divide
 from core.radar.scatterers import surface_scatterers
 from core.radar.waveform import Waveform
@@ -110,12 +109,6 @@ def demo_frames(*, seed: int = 1, scatterers: int = 25_000) -> Iterator[Frame]:
             signal_to_noise_db=20.0,
             random=random,
         )
-        alone = replace(
-            interval,
-            start=0,
-            stop=interval.stop - interval.start,
-            middle=interval.middle - interval.start,
-        )
-        return polar_format_frame(history, alone, ImagingSettings(), label=f"pass {number}")
+        return interval_frame(history, interval.alone(), ImagingSettings(), label=f"pass {number}")
 
     yield from in_order(frame, zip(intervals, of_noise, strict=True))

@@ -93,8 +93,8 @@ def test_the_image_equals_the_direct_sum():
     axes = frame.projection.matrix[:, :3] * 0.15
     wavenumber = 4 * np.pi / SPEED_OF_LIGHT_M_PER_S * history.frequency_hz
     in_plane = track.line_of_sight @ axes.T
-    weights = HAMMING.weights(np.linspace(0, 1, 40))[:, None] * HAMMING.weights(
-        np.linspace(0, 1, 256)
+    weights = np.multiply.outer(
+        *(HAMMING.weights((np.arange(count) + 0.5) / count) for count in (40, 256))
     )
     place = (np.arange(32) - 16) * 0.15
     vectors = in_plane[:, :, None] * wavenumber
