@@ -166,14 +166,7 @@ def interval_frame(
     Source: eqs. 4 to 6 for the axes.
     """
     track, window = history.track, settings.window
-    row_m, column_m = settings.spacing_m
-    projection = range_doppler_projection(
-        line_of_sight=track.line_of_sight[interval.middle],
-        line_of_sight_rate_per_s=track.line_of_sight_rate_per_s[interval.middle],
-        row_spacing_m=row_m,
-        column_spacing_m=column_m,
-        shape=settings.shape,
-    )
+    projection = interval_projection(history, interval, settings)
     rayleigh_m = (
         SPEED_OF_LIGHT_M_PER_S / (2 * history.bandwidth_hz),
         history.wavelength_m / (2 * interval.turn_rad),
@@ -185,11 +178,24 @@ def interval_frame(
         sensor="radar",
         label=label,
         line_of_sight=track.line_of_sight[interval.middle],
-        row_spacing_m=row_m,
-        column_spacing_m=column_m,
+        row_spacing_m=settings.spacing_m[0],
+        column_spacing_m=settings.spacing_m[1],
         row_resolution_m=window.half_power_width_cells * rayleigh_m[0],
         column_resolution_m=window.half_power_width_cells * rayleigh_m[1],
         window=window.name,
+    )
+
+
+def interval_projection(
+    history: PhaseHistory, interval: CoherentInterval, settings: ImagingSettings
+) -> Projection:
+    """Return the projection of an interval's image, from the line of sight at its middle."""
+    return range_doppler_projection(
+        line_of_sight=history.track.line_of_sight[interval.middle],
+        line_of_sight_rate_per_s=history.track.line_of_sight_rate_per_s[interval.middle],
+        row_spacing_m=settings.spacing_m[0],
+        column_spacing_m=settings.spacing_m[1],
+        shape=settings.shape,
     )
 
 
