@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from core.benchmarks.gridding import numpy_polar_format
 from core.benchmarks.measuring import Progress, machine, measured, median_s
-from core.experiments.demo import demo_echoes
+from core.experiments.demo import DEMO_PASSES, FRAMES_PER_PASS, demo_echoes
 from core.experiments.results import Figure, Results
 from core.frame import Frame
 from core.parallel import in_order
@@ -33,7 +33,7 @@ ROWS_EVERY = 16
 def run_image(
     *,
     repeats: int = 3,
-    most_frames: int | None = None,
+    echoes: Sequence[Echoes] | None = None,
     settings: ImagingSettings | None = None,
     seed: int = 1,
     progress: Progress = lambda _stage, _done, _total: None,
@@ -42,20 +42,16 @@ def run_image(
 
     Args:
         repeats: runs; the median counts.
-        most_frames: of the demo's 60, the first so many; None for all.
+        echoes: with their intervals; None for the demo's.
         settings: of the images.
         seed: of the echoes.
         progress: told of stage, steps done and steps in all.
     """
     before = machine()
     settings = settings or ImagingSettings()
-    echoes: list[Echoes] = []
-    for history, interval, _ in demo_echoes(seed=seed, scatterers=SCATTERERS):
-        echoes.append((history, interval))
-        progress("simulating echoes", len(echoes), most_frames or 60)
-        if len(echoes) == most_frames:
-            break
-    figures = _whole_demo(echoes, settings, repeats, progress)
+    is_demo = echoes is None
+    echoes = echoes or _demo(seed, progress)
+    figures = _all_frames(echoes, settings, repeats, WANTED if is_demo else None, progress)
     figures += _rivals(echoes[::COMPARED_EVERY], settings, repeats, progress)
     return Results(
         name="image",
@@ -67,15 +63,28 @@ def run_image(
             "seed": seed,
             "rivals": f"every {COMPARED_EVERY}th frame; back-projection of every {ROWS_EVERY}th "
             "row, its time taken that many times",
-            **before,
+            "threads": before["threads"],
+            "load_average": before["load_average"],
             "load_average_at_end": machine()["load_average"],
         },
         figures=tuple(figures),
     )
 
 
-def _whole_demo(
-    echoes: Sequence[Echoes], settings: ImagingSettings, repeats: int, progress: Progress
+def _demo(seed: int, progress: Progress) -> list[Echoes]:
+    echoes: list[Echoes] = []
+    for history, interval, _ in demo_echoes(seed=seed, scatterers=SCATTERERS):
+        echoes.append((history, interval))
+        progress("simulating echoes", len(echoes), len(DEMO_PASSES) * FRAMES_PER_PASS)
+    return echoes
+
+
+def _all_frames(
+    echoes: Sequence[Echoes],
+    settings: ImagingSettings,
+    repeats: int,
+    wanted: str | None,
+    progress: Progress,
 ) -> list[Figure]:
     seconds, busy_s = [], []
     for done in range(1, repeats + 1):
@@ -84,9 +93,9 @@ def _whole_demo(
         busy_s.append(time.process_time() - began_s)
         progress("polar format", done, repeats)
     wall_s = median_s(seconds)
-    name = f"{len(echoes)}-frame demo, echoes to frames"
+    name = f"{len(echoes)} frames from their echoes"
     return [
-        Figure(name=name, value=wall_s, unit="s", wanted=WANTED if len(echoes) == 60 else None),
+        Figure(name=name, value=wall_s, unit="s", wanted=wanted),
         Figure(name=f"{name}, processor time", value=median_s(busy_s), unit="s"),
         Figure(name=f"{name}, per second", value=len(echoes) / wall_s, unit="frames/s"),
     ]

@@ -3,9 +3,13 @@ import pytest
 
 from core.benchmarks.gridding import numpy_polar_format
 from core.benchmarks.image import run_image
+from core.geometry.track import random_views_track
 from core.radar.aperture import Aperture
-from core.radar.imaging import ImagingSettings
+from core.radar.echoes import point_echoes
+from core.radar.imaging import ImagingSettings, whole_interval
+from core.radar.phase_history import PhaseHistory
 from core.radar.polar_format import polar_format
+from core.radar.waveform import Waveform
 
 
 @pytest.mark.parametrize("shape", [(48, 64), (33, 47)])
@@ -36,11 +40,24 @@ def test_plain_numpy_is_the_direct_sum_and_so_is_ours(shape):
 
 
 def test_every_way_is_timed_and_agrees():
-    small = ImagingSettings(shape=(64, 64), pixel_spacing_m=0.3)
-    results = run_image(repeats=1, most_frames=1, settings=small)
+    waveform = Waveform(frequency_count=96)
+    track = random_views_track(
+        views=1,
+        turn_rad=waveform.wavelength_m / 0.3,
+        pulses_per_view=150,
+        pulse_repetition_frequency_hz=100.0,
+        random=np.random.default_rng(1),
+    )
+    random = np.random.default_rng(2)
+    samples = point_echoes(
+        random.uniform(-3, 3, (20, 3)), np.ones(20), track.line_of_sight, waveform.frequencies_hz()
+    )
+    history = PhaseHistory(samples=samples, frequency_hz=waveform.frequencies_hz(), track=track)
+    small = ImagingSettings(shape=(64, 64), pixel_spacing_m=0.15)
+    results = run_image(repeats=1, echoes=[(history, whole_interval(history))], settings=small)
     values = {figure.name: figure for figure in results.figures}
-    assert values["1-frame demo, echoes to frames"].wanted is None
-    assert values["1-frame demo, echoes to frames, per second"].value > 0
+    assert values["1 frames from their echoes"].wanted is None
+    assert values["1 frames from their echoes, per second"].value > 0
     assert values["polar format, times faster than back-projection"].value > 1
     agreed = [figure.met for name, figure in values.items() if "differs from" in name]
     assert agreed == [True, True]

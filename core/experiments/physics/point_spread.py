@@ -57,6 +57,13 @@ class PointResponse:
     cuts: tuple[Cut, Cut]
 
     @property
+    def cell_m(self) -> tuple[float, float]:
+        """Rayleigh cells in range and cross-range."""
+        frame, width = self.frame, window_named(self.frame.window).half_power_width_cells
+        row_m, column_m = frame.row_resolution_m or 0.0, frame.column_resolution_m or 0.0
+        return row_m / width, column_m / width
+
+    @property
     def error_cells(self) -> float:
         """The larger of both axes' displacements."""
         return max(abs(cut.error_cells) for cut in self.cuts)
