@@ -95,6 +95,8 @@ def image(
         coarsest_resolution_m=focus.coarsest_resolution_m,
     )
     divides = divide == "yes" or (divide == "auto" and method != "backprojection")
+    if focus.target_radius_m is not None and not divides:
+        raise ValueError("--target-radius-m judges intervals; divide into them with --divide yes.")
     assessed = assessed_intervals(history, settings) if divides else ()
     made = _made(history, settings, assessed)
     parts = unsuitable_parts(history.track, assessed)

@@ -301,6 +301,7 @@ def test_options_of_the_other_experiment_are_refused(capsys, words, wanted):
     [
         ("image {pass} {out}/out.h5 --oversampling 0.2", "1 to 64; got 0.2"),
         ("image {pass} {out}/out.h5 --oversampling 2 --column-spacing-m 1", "not both"),
+        ("image {pass} {out}/out.h5 --target-radius-m 5 --divide no", "with --divide yes"),
         ("image {pass} {out}/out.h5 --window taylor --taylor-nbar 1", "nbar of 2 to 20"),
         ("image {pass} {out}/out.h5 --picture {out}/p.jpg", "must end in .png"),
         ("image {pass} {out}/out.h5 --json {out}/no/a.json", "no folder"),
