@@ -170,6 +170,46 @@ def test_measured_echoes_are_imported_and_focused(capsys, shared_data, tmp_path)
     assert frame.shape == (128, 128)
 
 
+def test_every_method_gives_the_same_intervals(capsys, one_frame, tmp_path):
+    echoes, out = one_frame[0], tmp_path / "out.h5"
+    seen = []
+    for method in ("polar", "keystone", "range-doppler", "backprojection"):
+        options = ("--method", method, "--divide", "yes", "--pixels", 64, "--oversampling", 2)
+        told = json.loads(run(capsys, "image", echoes, out, *options, "--json", "-"))
+        assert (told["method"], told["frames"], told["column_spacing_m"]) == (method, 1, 0.075)
+        (frame,) = read_pass(out).frames
+        seen.append(frame.amplitude)
+        assert frame.column_spacing_m == 0.075
+    polar, keystone, _, backprojected = seen
+    for other in (keystone, backprojected):
+        assert np.abs(other - polar).max() < 0.03 * polar.max()
+
+
+def test_verdicts_are_told_and_written(capsys, echoes, tmp_path):
+    out = tmp_path / "out.h5"
+    sharp = ("--target-radius-m", 8.7, "--coarsest-resolution-m", 0.28, "--window", "taylor")
+    sharp = (*sharp, "--pixels", 64)
+    said = run(capsys, "image", echoes, out, *sharp)
+    assert re.search(r"Of \d+ intervals: 0 accepted, \d+ shortened, \d+ rejected", said)
+    assert re.search(r"Unsuitable from .* s, zenith part: θ̈ and φ̈ make .* more than π/4", said)
+    told = json.loads(run(capsys, "image", echoes, out, *sharp, "--json", "-"))
+    assert told["window"] == "taylor -35 dB nbar 5"
+    statuses = [interval["status"] for interval in told["intervals"]]
+    assert told["verdicts"] == {
+        status: statuses.count(status) for status in ("accepted", "shortened", "rejected")
+    }
+    assert told["frames"] == len(statuses) - statuses.count("rejected")
+    assert {part["part"] for part in told["unsuitable"]} == {
+        "zenith part",
+        "unevenly turning part",
+    }
+    by_bending = (*sharp, "--criterion", "bending", "--json", "-")
+    told = json.loads(run(capsys, "image", echoes, out, *by_bending))
+    assert told["verdicts"]["rejected"] == 0
+    line = refused(capsys, "image", echoes, out, "--target-radius-m", 20)
+    assert "unambiguous in range over 38.4 m only" in line
+
+
 def test_a_damaged_mesh_writes_nothing(capsys, tmp_path):
     mesh, out = tmp_path / "empty.obj", tmp_path / "out.h5"
     mesh.write_text("# no vertices\n")
@@ -266,6 +306,10 @@ def test_options_of_the_other_experiment_are_refused(capsys, words, wanted):
 @pytest.mark.parametrize(
     ("words", "wanted"),
     [
+        ("image {pass} {out}/out.h5 --oversampling 0.2", "1 to 64; got 0.2"),
+        ("image {pass} {out}/out.h5 --oversampling 2 --column-spacing-m 1", "not both"),
+        ("image {pass} {out}/out.h5 --target-radius-m 5 --divide no", "with --divide yes"),
+        ("image {pass} {out}/out.h5 --window taylor --taylor-nbar 1", "nbar of 2 to 20"),
         ("image {pass} {out}/out.h5 --picture {out}/p.jpg", "must end in .png"),
         ("image {pass} {out}/out.h5 --json {out}/no/a.json", "no folder"),
         ("image {pass} {out}/out.txt", "must end in .h5, .hdf5"),

@@ -44,6 +44,7 @@ def frame(random, number):
         column_spacing_m=0.05,
         row_resolution_m=0.2,
         label=f"frame {number}",
+        window=("hamming", "taylor -40 dB nbar 6")[number % 2],
     )
 
 
@@ -71,7 +72,7 @@ def test_reading_what_was_written_gives_the_same(tmp_path, seed, frames, with_ra
     for ours, theirs in zip(after.frames, before.frames, strict=True):
         assert np.array_equal(ours.amplitude, theirs.amplitude)
         assert np.array_equal(ours.projection.matrix, theirs.projection.matrix)
-        for name in ("time_s", "sensor", "label", "row_spacing_m", "column_resolution_m"):
+        for name in ("time_s", "sensor", "label", "window", "row_spacing_m", "column_resolution_m"):
             assert getattr(ours, name) == getattr(theirs, name)
 
 
