@@ -10,13 +10,15 @@ from contextlib import contextmanager
 import uvicorn
 from fastapi import FastAPI
 
+from app.compilation import compiling
 from app.gate import LOOPBACK_NAMES
 from app.playback import DEFAULT_SPEED_HZ, Playback
 from app.source import Source
-from app.stream import LiveStream
+from app.stream import LiveStream, SurfaceOf
 from app.viewport import Viewport
 from app.viser_server import PrivateViserServer
 from app.web import create_app
+from core.hull.volume import VoteVolume
 from core.reconstruction import ReconstructionSettings
 
 DEFAULT_PORT = 8370
@@ -59,7 +61,12 @@ def serve(
             if open_browser:
                 webbrowser.open(address)
 
-        with workstation(source, settings, playback=playback) as app:
+        with (
+            compiling() as compilation,
+            workstation(
+                source, settings, playback=playback, surface_of=compilation.surface_of
+            ) as app,
+        ):
             WorkstationServer(app, announce).run(sockets=[listener])
 
 
@@ -69,9 +76,10 @@ def workstation(
     settings: ReconstructionSettings | None = None,
     *,
     playback: Playback | None = None,
+    surface_of: SurfaceOf = VoteVolume.surface,
 ) -> Iterator[FastAPI]:
     """Run the live loop and the viewport, and give the application that shows them."""
-    stream = LiveStream(source, settings, playback=playback)
+    stream = LiveStream(source, settings, playback=playback, surface_of=surface_of)
     viser_server = PrivateViserServer()
     try:
         app = create_app(stream, viser_server.address)

@@ -11,7 +11,11 @@ from app.playback import Playback
 from app.snapshot import Snapshot, Status, record_of
 from app.source import Source
 from core.frame import Frame
+from core.hull.closed_mesh import Surface
+from core.hull.volume import VoteVolume
 from core.reconstruction import ReconstructionSettings, Step, reconstruct
+
+SurfaceOf = Callable[[VoteVolume], Surface]
 
 _log = logging.getLogger("radarhull")
 
@@ -30,11 +34,13 @@ class LiveStream:
         settings: ReconstructionSettings | None = None,
         *,
         playback: Playback | None = None,
+        surface_of: SurfaceOf = VoteVolume.surface,
     ) -> None:
         """Prepare to play `source`; nothing runs before `start`."""
         self.source = source
         self.settings = settings or ReconstructionSettings()
         self._playback = playback or Playback()
+        self._surface_of = surface_of
         self._tape = _Tape(source.frames)
         self._observers = Observers()
         self._changed = threading.Condition()
@@ -154,7 +160,7 @@ class LiveStream:
             self._wait_for_restart(run)
 
     def _play_through(self, run: int) -> None:
-        for step in reconstruct(self._tape.frames(), self.settings):
+        for step in reconstruct(self._tape.frames(), self.settings, surface_of=self._surface_of):
             if not self._release(run, step):
                 return
         if not self.snapshot.records and not self._is_over(run):

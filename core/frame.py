@@ -30,6 +30,8 @@ class Frame:
         row_resolution_m, column_resolution_m: −3 dB widths of the point response, None where
             unknown.
         label: what the frame is called where a person sees it.
+        window: what weighed both axes, as `core.radar.window.window_named` reads it; it shapes
+            the point response.
     """
 
     amplitude: NDArray[np.float32]
@@ -42,6 +44,7 @@ class Frame:
     row_resolution_m: float | None = None
     column_resolution_m: float | None = None
     label: str = ""
+    window: str = "hamming"
 
     def __post_init__(self) -> None:
         amplitude = frozen(self.amplitude, np.float32, (None, None), "Frame amplitude")

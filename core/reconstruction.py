@@ -1,6 +1,6 @@
 """The algorithm on one page: frames in, a hull that shrinks view by view out."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from core.arrays import Floats
@@ -8,9 +8,9 @@ from core.frame import Frame
 from core.geometry.grid import VoxelGrid
 from core.hull.registration import centroid_registered
 from core.hull.shadow import CarvingRule, carving_view
-from core.hull.surface import EMPTY_SURFACE, Surface, hull_surface, mask_surface
+from core.hull.surface import EMPTY_SURFACE, Surface
 from core.hull.view import View
-from core.hull.votes import VoteVolume
+from core.hull.volume import VoteVolume
 from core.measurement.extents import Extent, axis_extents, unobserved_direction
 from core.measurement.lines import LineMeasurement, principal_lines
 from core.silhouettes.extraction import ExtractionSettings, extract_silhouette
@@ -32,8 +32,6 @@ class ReconstructionSettings:
             threshold T of eq. 25 is the number of views less this; 0 is the paper's T = I.
         registers_centroids: whether frames are shifted to a common centroid (section III.D),
             for frames whose offsets are unknown.
-        exact_surface: whether the surface is snapped onto the outlines between the voxels, or
-            stands halfway between voxels, which needs no kernels compiled at the first start.
         extraction: how silhouettes are taken from frames.
     """
 
@@ -42,7 +40,6 @@ class ReconstructionSettings:
     rule: CarvingRule = "shadow"
     tolerated_misses: int = 0
     registers_centroids: bool = False
-    exact_surface: bool = True
     extraction: ExtractionSettings = field(default_factory=ExtractionSettings)
 
     def __post_init__(self) -> None:
@@ -83,12 +80,20 @@ class Step:
 
 
 def reconstruct(
-    frames: Iterable[Frame], settings: ReconstructionSettings | None = None
+    frames: Iterable[Frame],
+    settings: ReconstructionSettings | None = None,
+    *,
+    surface_of: Callable[[VoteVolume], Surface] = VoteVolume.surface,
 ) -> Iterator[Step]:
     """Carve a hull frame by frame and yield the state after each.
 
     A frame in which no target is detected says nothing of where the target is; it is noted and
     does not vote.
+
+    Args:
+        frames: in any order.
+        settings: what an analyst may choose.
+        surface_of: meshes the hull at the volume's threshold; by default exactly.
 
     Raises:
         ValueError: a frame without contrast, or a grid too large.
@@ -105,13 +110,14 @@ def reconstruct(
             view = View(silhouette=silhouette, projection=frame.projection)
             views.append(carving_view(view, settings.rule))
             volume.add(views[-1])
+            volume.threshold = max(1, len(views) - settings.tolerated_misses)
         yield _step(
             number=number,
             frame=frame,
             silhouette=silhouette,
             volume=volume,
             views=views,
-            settings=settings,
+            surface=surface_of(volume) if views else EMPTY_SURFACE,
         )
 
 
@@ -122,10 +128,8 @@ def _step(
     silhouette: Silhouette,
     volume: VoteVolume,
     views: Sequence[View],
-    settings: ReconstructionSettings,
+    surface: Surface,
 ) -> Step:
-    threshold = max(1, len(views) - settings.tolerated_misses) if views else 0
-    surface = _surface(volume, threshold, settings) if views else EMPTY_SURFACE
     extents = () if surface.is_empty else axis_extents(surface, volume.grid, views)
     is_closed = bool(extents) and all(extent.is_bounded for extent in extents)
     missing = f"frame {number} shows no target and does not vote" if silhouette.is_empty else ""
@@ -136,17 +140,11 @@ def _step(
         silhouette=silhouette,
         note=missing,
         surface=surface,
-        threshold=threshold,
+        threshold=volume.threshold or 0,
         extents=extents,
         lines=principal_lines(surface, LINE_NAMES) if is_closed else (),
         unobserved=unobserved_direction([view.projection for view in views]) if views else None,
     )
-
-
-def _surface(volume: VoteVolume, threshold: int, settings: ReconstructionSettings) -> Surface:
-    if settings.exact_surface:
-        return hull_surface(volume, threshold)
-    return mask_surface(volume.hull(threshold), volume.grid)
 
 
 def _registered(frame: Frame, silhouette: Silhouette) -> Frame:

@@ -13,6 +13,7 @@ from app.commands.console import Report, progress_bars
 from app.commands.options import JsonTo, OptionalInt, checked_seed
 from app.commands.outputs import checked_json, show_results
 from core.benchmarks import carve, edit, growth
+from core.benchmarks.image import run_image
 from core.benchmarks.plots import plot_growth
 from core.experiments.results import Results
 
@@ -20,7 +21,7 @@ Sizes = Sequence[tuple[int, int]]
 
 
 def bench(
-    name: Annotated[Literal["carve", "edit", "growth", "surface"], tyro.conf.Positional],
+    name: Annotated[Literal["carve", "edit", "growth", "surface", "image"], tyro.conf.Positional],
     /,
     *,
     sizes: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NxVIEWS", help_behavior_hint="")] = (),
@@ -29,25 +30,29 @@ def bench(
     out: Annotated[Path | None, tyro.conf.arg(metavar="FOLDER", help_behavior_hint="")] = None,
     seed: int = 1,
 ) -> None:
-    """Measure the carving engine on a test satellite with exact outlines.
+    """Measure the carving engine on a test satellite with exact outlines, or imaging on the demo.
 
     carve: all votes, against every peer that is installed and against the exact votes. edit: from
     a dragged vertex or a new outline to the exact mesh. growth: time and memory against voxels,
     views and vertices, with stored votes and hull only. surface: error against the true hull.
-    Peers come with the extra "bench".
+    image: from the demo's echoes to its 60 frames, against back-projection and plain NumPy. Peers
+    come with the extra "bench".
 
     Args:
         name: what to measure.
         sizes: voxels a side and views, as 256x60; the benchmark's own by default.
-        repeats: runs (carve, growth) or edits (edit) of each kind; the benchmark's own by default.
+        repeats: runs (carve, growth, image) or edits (edit) of each kind; the benchmark's own by
+            default.
         json: write settings and figures as JSON to this file, or to standard output for "-".
         out: folder for plots (growth).
-        seed: of views and edits.
+        seed: of views, edits and echoes.
     """
     if repeats is not None and repeats < 1:
         raise ValueError(f"At least 1 repeat is needed, got {repeats}.")
     if out is not None and name != "growth":
         raise ValueError(f"Only growth draws plots; leave --out away for {name}.")
+    if sizes and name == "image":
+        raise ValueError("The demo's frames have their own size; leave --sizes away for image.")
     checked_json(json)
     checked_seed(seed)
     chosen = tuple(_size(text) for text in sizes)
@@ -67,6 +72,8 @@ def _run(
         return edit.run_edit(
             sizes=sizes or edit.SIZES, repeats=repeats or 100, seed=seed, progress=report
         )
+    if name == "image":
+        return run_image(repeats=repeats or 3, seed=seed, progress=report)
     if name == "surface":
         return _surface(sizes, seed, report)
     return _growth(sizes, repeats or 5, out, seed, report)

@@ -1,21 +1,35 @@
 """`radarhull image`."""
 
-from typing import Annotated, Literal
-
-import tyro
+from collections import Counter
+from collections.abc import Sequence
+from typing import Any
 
 from app.commands.console import progress_bars
-from app.commands.options import JsonTo, OptionalFile, OutputFile, PassFile
+from app.commands.imaging_options import (
+    DEFAULT_FOCUS,
+    DEFAULT_WEIGHING,
+    Divide,
+    FocusOptions,
+    MethodOption,
+    WeighingOptions,
+)
+from app.commands.options import JsonTo, OptionalFile, OptionalFloat, OutputFile, PassFile
 from app.commands.outputs import checked_json, checked_pass, echo_facts, show_summary
 from core.formats.files import checked_output
 from core.formats.pass_file import RecordedPass, read_pass, write_pass
 from core.formats.pictures import SUFFIXES, write_picture
 from core.frame import Frame
-from core.radar.backprojection import backprojected_frame
-from core.radar.imaging import ImagingSettings, frame_count, frames
+from core.radar.imaging import (
+    ImagingSettings,
+    assessed_intervals,
+    frames,
+    interval_frame,
+    whole_interval,
+)
+from core.radar.intervals import AssessedInterval
 from core.radar.phase_history import PhaseHistory
-
-Method = Literal["polar", "backprojection"]
+from core.radar.unsuitable import UnsuitablePart, unsuitable_parts
+from core.radar.waveform import SPEED_OF_LIGHT_M_PER_S
 
 
 def image(
@@ -27,7 +41,12 @@ def image(
     overlap: float = 0.0,
     pixels: int = 512,
     pixel_spacing_m: float = 0.06,
-    method: Annotated[Method, tyro.conf.arg(metavar="{polar,backprojection}")] = "polar",
+    column_spacing_m: OptionalFloat = None,
+    oversampling: OptionalFloat = None,
+    method: MethodOption = "polar",
+    divide: Divide = "auto",
+    weighing: WeighingOptions = DEFAULT_WEIGHING,
+    focus: FocusOptions = DEFAULT_FOCUS,
     picture: OptionalFile = None,
     json: JsonTo = None,
 ) -> None:
@@ -40,9 +59,15 @@ def image(
         overlap: share of an interval that the next one uses again, 0 to below 1.
         pixels: rows and columns of a frame.
         pixel_spacing_m: size of a pixel, metres.
-        method: "polar" divides into coherent intervals and takes wavefronts for planes;
-            "backprojection" makes one image of all pulses on their slant plane with spherical
-            wavefronts, for a near radar such as the measured Gotcha data.
+        column_spacing_m: size of a pixel in cross-range, metres, where it differs from range.
+        oversampling: pixels per resolution cell on both axes, instead of spacings in metres.
+        method: "polar" format takes wavefronts for planes; "keystone" nearly so; "range-doppler"
+            is the paper's plain imaging, which smears away from the middle; "backprojection" is
+            slow and takes spherical wavefronts, for a near radar such as the measured Gotcha data.
+        divide: into coherent intervals (yes), or make one image of all pulses (no); auto divides
+            unless the method is backprojection.
+        weighing: how both axes are weighed.
+        focus: which intervals can be sharp.
         picture: also write the brightest frame as a PNG in dB, 60 dB deep.
         json: write a summary as JSON to this file, or to standard output for "-".
     """
@@ -51,49 +76,136 @@ def image(
     if picture is not None:
         checked_output(picture, SUFFIXES)
     recorded = read_pass(pass_file)
-    if recorded.history is None:
+    history = recorded.history
+    if history is None:
         raise ValueError(f"{pass_file} holds frames, but no echoes to image.")
+    row_m, column_m = _spacing_m(
+        history, resolution_m, pixel_spacing_m, column_spacing_m, oversampling
+    )
     settings = ImagingSettings(
         cross_range_resolution_m=resolution_m,
         overlap=overlap,
         shape=(pixels, pixels),
-        pixel_spacing_m=pixel_spacing_m,
+        pixel_spacing_m=row_m,
+        column_spacing_m=column_m,
+        method=method,
+        window=weighing.chosen(),
+        target_radius_m=focus.target_radius_m,
+        criterion=focus.criterion,
+        coarsest_resolution_m=focus.coarsest_resolution_m,
     )
-    made = _frames(recorded.history, settings, method)
-    write_pass(out, RecordedPass(history=recorded.history, frames=tuple(made)))
+    divides = divide == "yes" or (divide == "auto" and method != "backprojection")
+    if focus.target_radius_m is not None and not divides:
+        raise ValueError("--target-radius-m judges intervals; divide into them with --divide yes.")
+    assessed = assessed_intervals(history, settings) if divides else ()
+    made = _made(history, settings, assessed)
+    parts = unsuitable_parts(history.track, assessed)
+    write_pass(out, RecordedPass(history=history, frames=tuple(made)))
     if picture is not None:
         write_picture(picture, max(made, key=lambda frame: float(frame.amplitude.max())))
     show_summary(
-        f"{out}: {len(made)} frames of {pixels} × {pixels} pixels of {pixel_spacing_m} m.",
+        _sentence(str(out), made, assessed, parts),
         {
             "file": str(out),
             "method": method,
+            "window": settings.window.name,
             "frames": len(made),
             "shape": [pixels, pixels],
-            "spacing_m": pixel_spacing_m,
-            **echo_facts(recorded.history),
+            "spacing_m": row_m,
+            "column_spacing_m": settings.spacing_m[1],
+            **_verdict_facts(history, assessed, parts),
+            **echo_facts(history),
         },
         json,
     )
 
 
-def _frames(history: PhaseHistory, settings: ImagingSettings, method: Method) -> list[Frame]:
-    if method == "polar":
-        return _polar_frames(history, settings)
-    frame = backprojected_frame(
-        history,
-        shape=settings.shape,
-        row_spacing_m=settings.pixel_spacing_m,
-        column_spacing_m=settings.pixel_spacing_m,
-    )
-    return [frame]
+def _spacing_m(
+    history: PhaseHistory,
+    resolution_m: float,
+    row_m: float,
+    column_m: float | None,
+    oversampling: float | None,
+) -> tuple[float, float]:
+    if oversampling is None:
+        return row_m, row_m if column_m is None else column_m
+    if column_m is not None:
+        raise ValueError("Give --oversampling or --column-spacing-m, not both.")
+    if not 1 <= oversampling <= 64:
+        raise ValueError(
+            f"--oversampling wants pixels per resolution cell, 1 to 64; got {oversampling}."
+        )
+    range_cell_m = SPEED_OF_LIGHT_M_PER_S / (2 * history.bandwidth_hz)
+    return range_cell_m / oversampling, resolution_m / oversampling
 
 
-def _polar_frames(history: PhaseHistory, settings: ImagingSettings) -> list[Frame]:
-    total = frame_count(history, settings)
+def _made(
+    history: PhaseHistory, settings: ImagingSettings, assessed: Sequence[AssessedInterval]
+) -> list[Frame]:
+    if not assessed:
+        return [interval_frame(history, whole_interval(history), settings)]
+    total = sum(each.used is not None for each in assessed)
     made: list[Frame] = []
     with progress_bars() as report:
         for frame in frames(history, settings):
             made.append(frame)
             report("frames", len(made), total)
     return made
+
+
+def _sentence(
+    out: str,
+    made: Sequence[Frame],
+    assessed: Sequence[AssessedInterval],
+    parts: Sequence[UnsuitablePart],
+) -> str:
+    rows, columns = made[0].shape
+    lines = [
+        f"{out}: {len(made)} frames of {rows} × {columns} pixels of {made[0].row_spacing_m:.4g} × "
+        f"{made[0].column_spacing_m:.4g} m."
+    ]
+    if any(each.verdict.quadratic_phase_rad is not None for each in assessed):
+        counts = _counts(assessed)
+        told = ", ".join(f"{count} {status}" for status, count in counts.items())
+        lines.append(f"Of {len(assessed)} intervals: {told}.")
+        lines += [
+            f"Unsuitable from {part.start_s:.1f} to {part.stop_s:.1f} s, {part.reason}."
+            for part in parts
+        ]
+    return "\n".join(lines)
+
+
+def _counts(assessed: Sequence[AssessedInterval]) -> dict[str, int]:
+    found = Counter(each.verdict.status for each in assessed)
+    return {status: found[status] for status in ("accepted", "shortened", "rejected")}
+
+
+def _verdict_facts(
+    history: PhaseHistory, assessed: Sequence[AssessedInterval], parts: Sequence[UnsuitablePart]
+) -> dict[str, Any]:
+    time_s = history.track.time_s
+    return {
+        "verdicts": _counts(assessed),
+        "intervals": [
+            {
+                "start_s": float(time_s[each.wanted.start]),
+                "stop_s": float(time_s[each.wanted.stop - 1]),
+                "status": each.verdict.status,
+                "part": each.verdict.part,
+                "reason": each.verdict.reason,
+                "quadratic_phase_rad": each.verdict.quadratic_phase_rad,
+                "resolution_m": each.verdict.resolution_m,
+            }
+            for each in assessed
+        ],
+        "unsuitable": [
+            {
+                "part": part.name,
+                "start_s": part.start_s,
+                "stop_s": part.stop_s,
+                "intervals": part.intervals,
+                "reason": part.reason,
+            }
+            for part in parts
+        ],
+    }

@@ -72,7 +72,7 @@ def echo_facts(history: PhaseHistory) -> dict[str, Any]:
         "pulses": len(history.track),
         "frequencies": len(history.frequency_hz),
         "centre_frequency_hz": float(history.frequency_hz.mean()),
-        "bandwidth_hz": history.bandwidth_hz,
+        "bandwidth_hz": history.frequency_step_hz * len(history.frequency_hz),
         "epoch_utc": history.track.epoch_utc or None,
         "duration_s": float(history.track.time_s[-1] - history.track.time_s[0]),
     }

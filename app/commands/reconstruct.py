@@ -16,6 +16,7 @@ from core.arrays import Floats
 from core.experiments.results import Table
 from core.formats.files import checked_output
 from core.formats.surfaces import SUFFIXES, write_surface
+from core.hull.warm_up import compile_kernels
 from core.reconstruction import ReconstructionSettings, Step
 from core.reconstruction import reconstruct as reconstruct_frames
 
@@ -60,6 +61,7 @@ def _carved(
     every_frame = (frame for source in sources for frame in source.frames())
     notes: list[str] = []
     with progress_bars() as report:
+        compile_kernels(report)
         for step in reconstruct_frames(every_frame, settings):
             report("frames", step.number, max(total, step.number))
             notes += [step.note] if step.note else []

@@ -1,6 +1,5 @@
 """`radarhull serve`."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -35,8 +34,5 @@ def serve(
         open: also open the page in the browser.
         carving: how the hull is carved.
     """
-    # The exact surface's kernels take 20 s to compile at the very first start, too long to wait
-    # for a first hull on screen.
-    settings = replace(carving.settings(), exact_surface=False)
     source = demo_source() if pass_file is None else pass_sources([pass_file])[0]
-    serve_source(source, port=port, open_browser=open, settings=settings)
+    serve_source(source, port=port, open_browser=open, settings=carving.settings())

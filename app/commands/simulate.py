@@ -1,6 +1,6 @@
 """`radarhull simulate`."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated, TypeVar
@@ -10,6 +10,7 @@ import tyro
 from skyfield.api import EarthSatellite
 
 from app.commands.console import progress_bars
+from app.commands.echo_options import DEFAULT_ERRORS, DEFAULT_SURFACE, Errors, Surface
 from app.commands.options import (
     Gigahertz,
     JsonTo,
@@ -33,9 +34,9 @@ from core.geometry.orbit import (
     satellite_from_tle,
 )
 from core.geometry.track import LineOfSightTrack
-from core.radar.echoes import simulate_echoes
+from core.radar.echoes import ScatteringModel, simulate_echoes
 from core.radar.phase_history import PhaseHistory
-from core.radar.scatterers import surface_scatterers
+from core.radar.pulse_errors import with_pulse_errors
 from core.radar.waveform import Waveform
 from core.targets import Target, tiangong_like
 
@@ -103,7 +104,8 @@ def simulate(
     mesh_unit_m: float = 1.0,
     observation: Annotated[Observation, tyro.conf.arg(name="")] = Observation(),
     radar: Annotated[Radar, tyro.conf.arg(name="")] = Radar(),
-    scatterers: int = 60_000,
+    surface: Annotated[Surface, tyro.conf.arg(name="")] = DEFAULT_SURFACE,
+    errors: Annotated[Errors, tyro.conf.arg(name="")] = DEFAULT_ERRORS,
     seed: int = 1,
     json: JsonTo = None,
 ) -> None:
@@ -115,7 +117,8 @@ def simulate(
         mesh_unit_m: metres per unit of the mesh file.
         observation: which pass of which orbit over which station.
         radar: what the radar sends.
-        scatterers: points on the target's surface.
+        surface: how the target's surface scatters.
+        errors: what goes wrong from pulse to pulse.
         seed: of the random generator.
         json: write a summary as JSON to this file, or to standard output for "-".
     """
@@ -123,25 +126,38 @@ def simulate(
     checked_json(json)
     checked_snr_db(radar.snr_db)
     checked_seed(seed)
+    disturbance = errors.pulse_errors()
+    random = np.random.default_rng(seed)
     target = tiangong_like() if mesh is None else _mesh_target(mesh, mesh_unit_m)
+    scattering = surface.scattering(target, random)
     track = pass_track(observation, radar.waveform())
-    history = _echoes(target, track, radar, scatterers=scatterers, seed=seed)
+    received = _echoes(scattering, track, radar, random)
+    # Errors are drawn last, so that the same seed gives the same echoes with and without them.
+    history, _ = with_pulse_errors(received, disturbance, random)
     write_pass(out, RecordedPass(history=history))
     show_summary(
         f"{out}: {len(track)} pulses of {target.name} from {track.epoch_utc} on.",
-        {"file": str(out), "target": target.name, "seed": seed, **echo_facts(history)},
+        {
+            "file": str(out),
+            "target": target.name,
+            "seed": seed,
+            **asdict(surface),
+            **asdict(errors),
+            **echo_facts(history),
+        },
         json,
     )
 
 
 def _echoes(
-    target: Target, track: LineOfSightTrack, radar: Radar, *, scatterers: int, seed: int
+    scattering: ScatteringModel,
+    track: LineOfSightTrack,
+    radar: Radar,
+    random: np.random.Generator,
 ) -> PhaseHistory:
-    random = np.random.default_rng(seed)
-    points = surface_scatterers(target, count=scatterers, random=random)
     with progress_bars() as report:
         return simulate_echoes(
-            points,
+            scattering,
             track,
             radar.waveform(),
             signal_to_noise_db=radar.snr_db,

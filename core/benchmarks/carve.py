@@ -12,7 +12,7 @@ from core.benchmarks.peers import PEERS, Peer
 from core.benchmarks.reference import every_nth_plane, reference_stride, reference_votes
 from core.benchmarks.workload import Task, degenerate_task, satellite_task
 from core.experiments.results import Figure, Results, Table
-from core.hull.votes import VoteVolume
+from core.hull.volume import VoteVolume
 
 ENGINE = "radarhull"
 SIZES = ((256, 60), (512, 120))

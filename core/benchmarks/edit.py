@@ -13,10 +13,9 @@ from core.benchmarks.edits import drags, redrawn
 from core.benchmarks.measuring import Progress, machine, measured, median_s, percentile
 from core.benchmarks.workload import Task, satellite_task
 from core.experiments.results import Figure, Results
-from core.hull.mesher import SurfaceMesher
 from core.hull.surface import hull_surface
 from core.hull.view import View
-from core.hull.votes import VoteVolume
+from core.hull.volume import VoteVolume
 
 SIZES = ((256, 60), (512, 120))
 EQUALITY_GRID = 48
@@ -42,13 +41,12 @@ class Editor(Protocol):
 
 
 class Engine:
-    """The engine as an application uses it: a volume and the mesher that watches it."""
+    """The engine as an application uses it."""
 
     def __init__(self, task: Task) -> None:
         """Let all views vote."""
         self.volume = VoteVolume(task.grid)
         self._numbers = self.volume.add_many(task.views)
-        self._mesher = SurfaceMesher(self.volume)
 
     def replace(self, number: int, view: View) -> None:
         """Let a view vote with another outline."""
@@ -56,7 +54,7 @@ class Engine:
 
     def surface(self) -> object:
         """Return the exact mesh as it now is."""
-        return self._mesher.surface()
+        return self.volume.surface()
 
 
 def run_edit(
@@ -169,12 +167,11 @@ def equality_figures(
     task = satellite_task(size, views, seed=seed)
     volume = VoteVolume(task.grid)
     numbers = volume.add_many(task.views)
-    mesher = SurfaceMesher(volume)
     scripts = drags(task.views, random), redrawn(task.views, random)
     voxels = vertices = 0
     for done in range(1, edits + 1):
         _random_edit(volume, numbers, scripts, random)
-        surface = mesher.surface()
+        surface = volume.surface()
         if done % CHECK_EVERY == 0 or done == edits:
             fresh = _from_scratch(volume)
             voxels += int(np.count_nonzero(fresh.votes != volume.votes))

@@ -21,7 +21,8 @@ from core.experiments.results import Figure, Results, Table
 from core.hull.hull_only import carved_surface
 from core.hull.surface import Surface, hull_surface
 from core.hull.threads import thread_count
-from core.hull.votes import MOST_STORED_VOXELS, VoteVolume
+from core.hull.volume import VoteVolume
+from core.hull.votes import MOST_STORED_VOXELS
 
 SIZES = ((64, 60), (128, 60), (256, 60), (512, 60), (1024, 60), (2048, 200))
 VIEWS = (15, 30, 60, 120, 240)

@@ -17,7 +17,7 @@ from core.benchmarks.workload import (
 from core.experiments.results import Figure, Results, Table
 from core.hull.surface import Surface, hull_surface, mask_surface
 from core.hull.view import View
-from core.hull.votes import VoteVolume
+from core.hull.volume import VoteVolume
 
 SIZES = ((64, 60), (128, 60), (256, 60), (512, 60))
 SAMPLES = 4000

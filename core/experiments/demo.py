@@ -1,7 +1,7 @@
 """The built-in demo: three passes of a Tiangong-1-like laboratory over Beijing."""
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 
 import numpy as np
@@ -18,9 +18,10 @@ from core.geometry.orbit import (
 from core.geometry.track import LineOfSightTrack
 from core.parallel import in_order
 from core.radar.echoes import simulate_echoes
-from core.radar.imaging import ImagingSettings, polar_format_frame
+from core.radar.imaging import ImagingSettings, interval_frame
 from core.radar.intervals import CoherentInterval, divide
-from core.radar.scatterers import surface_scatterers
+from core.radar.phase_history import PhaseHistory
+from core.radar.scatterers import Scatterers, surface_scatterers
 from core.radar.waveform import Waveform
 from core.targets import tiangong_like
 
@@ -96,26 +97,60 @@ def demo_frames(*, seed: int = 1, scatterers: int = 25_000) -> Iterator[Frame]:
         seed: of the random generators, one for the target and one for each interval's noise.
         scatterers: points on the target's surface.
     """
+
+    def frame(work: _Work) -> Frame:
+        history, interval, label = _echoes(work)
+        return interval_frame(history, interval, ImagingSettings(), label=label)
+
+    yield from in_order(frame, _work(seed, scatterers))
+
+
+def demo_echoes(
+    *, seed: int = 1, scatterers: int = 25_000
+) -> Iterator[tuple[PhaseHistory, CoherentInterval, str]]:
+    """Yield what `demo_frames` makes its images of: (echoes, their interval, label).
+
+    Args:
+        seed: of the random generators, one for the target and one for each interval's noise.
+        scatterers: points on the target's surface.
+    """
+    yield from in_order(_echoes, _work(seed, scatterers))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Work:
+    """One interval of the demo to be simulated."""
+
+    points: Scatterers
+    number: int
+    track: LineOfSightTrack
+    interval: CoherentInterval
+    waveform: Waveform
+    random: Generator
+
+
+def _work(seed: int, scatterers: int) -> Iterator[_Work]:
     waveform = Waveform()
     intervals = demo_intervals(waveform)
     of_target, *of_noise = np.random.default_rng(seed).spawn(1 + len(intervals))
     points = surface_scatterers(tiangong_like(), count=scatterers, random=of_target)
-
-    def frame(work: tuple[tuple[int, LineOfSightTrack, CoherentInterval], Generator]) -> Frame:
-        (number, track, interval), random = work
-        history = simulate_echoes(
-            points,
-            track.part(interval.start, interval.stop),
-            waveform,
-            signal_to_noise_db=20.0,
+    for (number, track, interval), random in zip(intervals, of_noise, strict=True):
+        yield _Work(
+            points=points,
+            number=number,
+            track=track,
+            interval=interval,
+            waveform=waveform,
             random=random,
         )
-        alone = replace(
-            interval,
-            start=0,
-            stop=interval.stop - interval.start,
-            middle=interval.middle - interval.start,
-        )
-        return polar_format_frame(history, alone, ImagingSettings(), label=f"pass {number}")
 
-    yield from in_order(frame, zip(intervals, of_noise, strict=True))
+
+def _echoes(work: _Work) -> tuple[PhaseHistory, CoherentInterval, str]:
+    history = simulate_echoes(
+        work.points,
+        work.track.part(work.interval.start, work.interval.stop),
+        work.waveform,
+        signal_to_noise_db=20.0,
+        random=work.random,
+    )
+    return history, work.interval.alone(), f"pass {work.number}"

@@ -14,7 +14,7 @@ from core.geometry.grid import VoxelGrid
 from core.hull.bounds import hull_bounds_m
 from core.hull.surface import mask_surface
 from core.hull.view import View
-from core.hull.votes import VoteVolume
+from core.hull.volume import VoteVolume
 from core.silhouettes.photograph import Photograph, photograph_silhouette, threshold_silhouette
 from core.silhouettes.silhouette import Silhouette
 

@@ -11,7 +11,7 @@ from core.geometry.track import random_views_track
 from core.hull.shadow import CarvingRule, carving_view
 from core.hull.surface import Surface, hull_surface
 from core.hull.view import View
-from core.hull.votes import VoteVolume
+from core.hull.volume import VoteVolume
 from core.measurement.comparison import Agreement, voxel_agreement
 from core.measurement.lines import LineMeasurement, angle_between_lines_rad, principal_lines
 from core.parallel import in_order

@@ -7,7 +7,7 @@ Layout, schema version 1 (every dataset carries its unit in the attribute `unit`
     /history/frequency_hz (frequencies,)
     /track/time_s …       the fields of `LineOfSightTrack`, attribute epoch_utc
     /frames/000000/…      amplitude (rows, columns), matrix (2 or 3, 4), line_of_sight (3,);
-                          attributes time_s, sensor, label, spacings and resolutions
+                          attributes time_s, sensor, label, window, spacings and resolutions
 
 A pass file may come from anywhere, so it is read as untrusted: `core.formats.untrusted_hdf5`.
 """
@@ -25,12 +25,18 @@ from core.frame import LENGTHS, Frame
 from core.geometry.projection import Projection
 from core.geometry.track import LineOfSightTrack
 from core.radar.phase_history import PhaseHistory
+from core.radar.window import HAMMING, window_named
 
 FORMAT = "radarhull pass"
 SCHEMA_VERSION = 1
 
 _TRACK_REQUIRED = {"time_s": "s", "line_of_sight": "1", "line_of_sight_rate_per_s": "1/s"}
-_TRACK_OPTIONAL = {"range_m": "m", "azimuth_rad": "rad", "elevation_rad": "rad"}
+_TRACK_OPTIONAL = {
+    "range_m": "m",
+    "azimuth_rad": "rad",
+    "elevation_rad": "rad",
+    "bisector_scale": "1",
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -148,6 +154,7 @@ def _write_frame(group: h5py.Group, frame: Frame) -> None:
     group.attrs["time_s"] = frame.time_s
     group.attrs["sensor"] = frame.sensor
     group.attrs["label"] = frame.label
+    group.attrs["window"] = frame.window
     for name in LENGTHS:
         value = getattr(frame, name)
         if value is not None:
@@ -171,5 +178,6 @@ def _read_frames(file: h5py.File) -> Iterable[Frame]:
             time_s=read_attribute(group, "time_s", float),
             sensor=sensor,
             label=read_attribute(group, "label", str, default=""),
+            window=window_named(read_attribute(group, "window", str, default=HAMMING.name)).name,
             **lengths,
         )

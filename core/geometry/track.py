@@ -22,6 +22,8 @@ class LineOfSightTrack:
         range_m: (pulses,) from radar to the target frame's origin, None where unknown.
         azimuth_rad: (pulses,) at the station, clockwise from north, None without a station.
         elevation_rad: (pulses,) at the station, above the horizon, None without a station.
+        bisector_scale: (pulses,) cos(β/2) of a bistatic pair, whose bisector the line of sight then
+            is (`core.geometry.bistatic`); None for one radar that sends and receives.
         epoch_utc: ISO 8601 time of time_s = 0, empty without an orbit.
     """
 
@@ -31,6 +33,7 @@ class LineOfSightTrack:
     range_m: Floats | None = None
     azimuth_rad: Floats | None = None
     elevation_rad: Floats | None = None
+    bisector_scale: Floats | None = None
     epoch_utc: str = ""
 
     def __post_init__(self) -> None:
@@ -48,7 +51,7 @@ class LineOfSightTrack:
         for name in ("line_of_sight", "line_of_sight_rate_per_s"):
             value = frozen(getattr(self, name), np.float64, (pulses, 3), name.replace("_", " "))
             object.__setattr__(self, name, value)
-        for name in ("range_m", "azimuth_rad", "elevation_rad"):
+        for name in ("range_m", "azimuth_rad", "elevation_rad", "bisector_scale"):
             value = getattr(self, name)
             if value is not None:
                 object.__setattr__(self, name, frozen(value, np.float64, (pulses,), name))
@@ -66,6 +69,12 @@ class LineOfSightTrack:
                 "The line of sight stands still in the target frame, so the echoes hold no "
                 "cross-range; a track along which it moves is needed."
             )
+        scale = self.bisector_scale
+        if scale is not None and not (scale.min() > 0 and scale.max() <= 1 + 1e-9):
+            raise ValueError(
+                "The bisector's scale cos(β/2) must lie above 0 and reach at most 1; it runs from "
+                f"{scale.min():.6g} to {scale.max():.6g}."
+            )
 
     def __len__(self) -> int:
         """Return the number of pulses."""
@@ -75,6 +84,17 @@ class LineOfSightTrack:
         """Return |dk/dt| at every pulse, (pulses,)."""
         rate: Floats = np.linalg.norm(self.line_of_sight_rate_per_s, axis=1)
         return rate
+
+    def phase_direction(self) -> Floats:
+        """Return the vectors whose product with a place is half the path beyond the origin.
+
+        For one radar the line of sight k, for a bistatic pair cos(β/2) times the bisector, which
+        is the mean of both lines of sight; (pulses, 3). A point's phase is −4π f / c times that.
+        """
+        if self.bisector_scale is None:
+            return self.line_of_sight
+        direction: Floats = self.bisector_scale[:, None] * self.line_of_sight
+        return direction
 
     def part(self, start: int, stop: int) -> "LineOfSightTrack":
         """Return pulses start … stop − 1 as a track on the same time scale."""
@@ -86,6 +106,7 @@ class LineOfSightTrack:
             range_m=None if self.range_m is None else self.range_m[where],
             azimuth_rad=None if self.azimuth_rad is None else self.azimuth_rad[where],
             elevation_rad=None if self.elevation_rad is None else self.elevation_rad[where],
+            bisector_scale=None if self.bisector_scale is None else self.bisector_scale[where],
             epoch_utc=self.epoch_utc,
         )
 

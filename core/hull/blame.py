@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.hull.threads import Compiled
-from core.hull.votes import VoteVolume, cast
+from core.hull.votes import VoteCounts, cast
 
 
-def removed_alone_m3(volume: VoteVolume) -> dict[int, float]:
+def removed_alone_m3(volume: VoteCounts) -> dict[int, float]:
     """Return for each voting view the volume, in m³, of the voxels that it alone removes.
 
     Every view but that one votes for such a voxel. The sweep adds up the voting views' positions

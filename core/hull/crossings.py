@@ -382,20 +382,3 @@ def _without(
             event_cause[left, 0], event_cause[left, 1] = event_cause[i, 0], event_cause[i, 1]
             left += 1
     return left
-
-
-@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
-def any_within(
-    vertices: Floats, to_image: Floats, low: Floats, high: Floats
-) -> bool:  # pragma: no cover - compiled
-    """Return whether a vertex (…, 3), in voxel indices, is seen between two image corners."""
-    for i in range(len(vertices)):
-        x, y, z = vertices[i, 0], vertices[i, 1], vertices[i, 2]
-        depth = to_image[2, 0] * x + to_image[2, 1] * y + to_image[2, 2] * z + to_image[2, 3]
-        row = to_image[0, 0] * x + to_image[0, 1] * y + to_image[0, 2] * z + to_image[0, 3]
-        if not low[0] * depth <= row <= high[0] * depth:
-            continue
-        column = to_image[1, 0] * x + to_image[1, 1] * y + to_image[1, 2] * z + to_image[1, 3]
-        if low[1] * depth <= column <= high[1] * depth:
-            return True
-    return False

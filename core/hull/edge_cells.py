@@ -54,6 +54,12 @@ class EdgeCells:
         lines = _lines((points - low) / cell) / far
         return cls(origin=origin, shape=shape, starts=starts, edges=edges, lines=lines)
 
+    def to_cell(self, to_image: Floats) -> Floats:
+        """Return the 3 × 4 map from homogeneous voxel indices to a cell's row and column."""
+        mapped = to_image.copy()
+        mapped[:2] = (to_image[:2] - self.origin[:2, None] * to_image[2]) * self.origin[2]
+        return mapped
+
 
 def longest_grid_edge_px(to_image: Floats, grid: VoxelGrid) -> float:
     """Return how long, in pixels, the step between neighbouring voxels can look in an image."""

@@ -10,9 +10,11 @@ import numpy as np
 
 from core.geometry.grid import VoxelGrid
 from core.hull.closed_mesh import Surface
-from core.hull.mesher import Slab, cells_of, exact_slab, joined_surface, tables_of
+from core.hull.cube_cases import edge_tables, triangle_table
+from core.hull.mesher import SlabMesh, cells_of, exact_vertices, joined_surface, tables_of
 from core.hull.plane_votes import PlaneVoter, Window
 from core.hull.region import regions_of_interest
+from core.hull.slab_mesh import mesh_slab
 from core.hull.threads import in_parallel, one_after_another
 from core.hull.view import View
 from core.hull.votes import Voter, checked_threshold
@@ -20,7 +22,7 @@ from core.hull.votes import Voter, checked_threshold
 SLAB_PLANES = 16
 """A slab's last plane is voted on again by the next one: few planes cost time, many memory."""
 
-EMPTY_SLAB = Slab(vertices=np.empty((0, 3)), faces=np.empty((0, 3), dtype=np.int32))
+EMPTY_SLAB = SlabMesh(vertices=np.empty((0, 3)), faces=np.empty((0, 3), dtype=np.int32))
 
 
 class Cancelled(Exception):  # noqa: N818 - nothing went wrong
@@ -59,11 +61,14 @@ def carved_surface(
     ends = [*range(0, grid.shape[0] - 1, SLAB_PLANES), grid.shape[0] - 1]
     windows = regions_of_interest(voters, grid, limit, np.array(ends))
 
-    def work(window: Window | None) -> Slab:
+    def work(window: Window | None) -> SlabMesh:
         if window is None or cancel():
             return EMPTY_SLAB
+        held, low = votes.votes(window), window.low.tolist()
         layers = _layers(window, grid)
-        return exact_slab(votes.votes(window), limit, layers, tables, tuple(window.low.tolist()))
+        crossed, faces = mesh_slab(held, limit, *layers, triangle_table(), edge_tables())
+        vertices = exact_vertices(crossed, held, limit, tables, (low[0], low[1], low[2]))
+        return SlabMesh(vertices=vertices, faces=faces)
 
     slabs = []
     with closing(one_after_another(work, windows)) as made:

@@ -4,7 +4,7 @@ Marching cubes finds which grid edges the hull's boundary crosses; each vertex i
 its grid edge to where the boundary really is.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,27 +14,42 @@ from core.arrays import Floats
 from core.geometry.grid import VoxelGrid
 from core.hull.changes import changed_edges
 from core.hull.closed_mesh import Surface
-from core.hull.crossings import CrossingTables, any_within, cross_grid_edges
+from core.hull.crossings import CrossingTables, cross_grid_edges
 from core.hull.cube_cases import edge_tables, triangle_table
-from core.hull.edge_cells import EdgeCells, longest_grid_edge_px
+from core.hull.edge_cells import EdgeCells
+from core.hull.kept_crossings import ChangedEdges, any_near, end_misses, kept_crossings
+from core.hull.outline import Outline
 from core.hull.slab_mesh import mesh_slab
 from core.hull.threads import in_parallel
-from core.hull.votes import Voter, Votes, VoteVolume
+from core.hull.votes import VoteCounts, Voter, Votes
 
 SLAB_PLANES = 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Slab:
+class SlabMesh:
     """The mesh of some planes.
 
     Attributes:
-        vertices: (vertices, 3) in voxel indices.
+        vertices: (vertices, 3) in voxel indices, one on each crossed grid edge.
         faces: (faces, 3) numbers of this slab's vertices, continued into the next slab's.
     """
 
     vertices: Floats
     faces: NDArray[np.int32]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Slab(SlabMesh):
+    """The mesh of some planes, and what tells later which of it an edit moves.
+
+    Attributes:
+        crossed: (vertices, 4) the grid edges, as `mesh_slab` returns them.
+        ends: (vertices, 2) views that miss their ends, as `end_misses` returns them.
+    """
+
+    crossed: NDArray[np.int32]
+    ends: NDArray[np.uint16]
 
 
 class SurfaceMesher:
@@ -44,13 +59,14 @@ class SurfaceMesher:
     equals meshing from scratch, number by number.
     """
 
-    def __init__(self, volume: VoteVolume) -> None:
+    def __init__(self, volume: VoteCounts) -> None:
         """Watch a volume; nothing is meshed yet."""
         self._volume = volume
+        self._grid = volume.grid
         self._slabs: list[Slab | None] = [None] * len(slab_layers(volume.grid))
         self._voters: dict[int, Voter] = {}
         self._cells: dict[int, EdgeCells] = {}
-        self._threshold = 0
+        self._tolerance = -1
         self._revision = -1
 
     def surface(self) -> Surface:
@@ -62,61 +78,85 @@ class SurfaceMesher:
         with self._volume.reading():
             threshold = self._volume.checked_threshold(self._volume.threshold)
             voters = voting(self._volume)
-            self._forget_changed(voters, threshold)
-            self._mesh_missing(voters, threshold)
-            self._voters, self._threshold = voters, threshold
+            before = list(self._slabs)
+            changes = self._changes(voters, len(voters) - threshold)
+            self._forget_changed(changes)
+            # Also where no slab is meshed again now: a later edit will ask for them.
+            for number in [n for n in self._cells if voters.get(n) is not self._voters.get(n)]:
+                del self._cells[number]
+            self._mesh_missing(voters, threshold, before, changes)
+            self._voters, self._tolerance = voters, len(voters) - threshold
             self._revision = self._volume.revision
-        return joined_surface([slab for slab in self._slabs if slab], self._volume.grid)
+            slabs = [slab for slab in self._slabs if slab]
+        return joined_surface(slabs, self._grid)
 
-    def _forget_changed(self, voters: dict[int, Voter], threshold: int) -> None:
+    def _changes(self, voters: dict[int, Voter], tolerance: int) -> list[ChangedEdges] | None:
+        """Return the outline edges that came or went, None if more or fewer misses count now."""
+        if tolerance != self._tolerance:
+            return None
+        changes = []
+        for number in voters.keys() | self._voters.keys():
+            old, new = self._voters.get(number), voters.get(number)
+            if old is not new:
+                changes += self._view_changes(number, old, new)
+        return changes
+
+    def _view_changes(
+        self, number: int, old: Voter | None, new: Voter | None
+    ) -> list[ChangedEdges]:
+        """Return a view's edges that came or went: all of them if it moved, came or went itself."""
+        if old and new and np.array_equal(old.to_image, new.to_image):
+            points, offsets, _ = changed_edges(old.outline, new.outline)
+            cells = EdgeCells.of(Outline(points=points, offsets=offsets), new.to_image, self._grid)
+            return [ChangedEdges.of(cells, new.to_image)]
+        changes = []
+        if old:
+            changes.append(ChangedEdges.of(self._cells[number], old.to_image))
+        if new:
+            changes.append(ChangedEdges.of(cells_of(new, self._grid), new.to_image))
+        return changes
+
+    def _forget_changed(self, changes: list[ChangedEdges] | None) -> None:
         """Drop the slabs that the changes since the last surface could have touched."""
-        if voters.keys() != self._voters.keys() or threshold != self._threshold:
+        if changes is None:
             self._slabs = [None] * len(self._slabs)
             return
         flipped = self._volume.planes_changed_since(self._revision)
-        replaced = [n for n, voter in voters.items() if voter is not self._voters[n]]
-        for number, (first, last) in enumerate(slab_layers(self._volume.grid)):
-            if flipped[max(first, 0) : last + 1].any():
-                self._slabs[number] = None
-        for number in replaced:
-            self._forget_near(self._voters[number], voters[number])
-
-    def _forget_near(self, old: Voter, new: Voter) -> None:
-        """Drop the slabs that have a vertex near what changed of an outline."""
-        if not np.array_equal(old.to_image, new.to_image):
-            self._slabs = [None] * len(self._slabs)
-            return
-        points = changed_edges(old.outline, new.outline)[0]
-        if len(points) == 0:
-            return
-        reach = longest_grid_edge_px(new.to_image, self._volume.grid)
-        low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
-        for number, slab in enumerate(self._slabs):
-            if slab and any_within(slab.vertices, new.to_image, low, high):
+        for number, (first, last) in enumerate(slab_layers(self._grid)):
+            slab = self._slabs[number]
+            if flipped[max(first, 0) : last + 1].any() or (
+                slab is not None and any_near(slab.crossed, changes)
+            ):
                 self._slabs[number] = None
 
-    def _mesh_missing(self, voters: dict[int, Voter], threshold: int) -> None:
+    def _mesh_missing(
+        self,
+        voters: dict[int, Voter],
+        threshold: int,
+        before: list[Slab | None],
+        changes: list[ChangedEdges] | None,
+    ) -> None:
         missing = [number for number, slab in enumerate(self._slabs) if slab is None]
         if not missing:
             return
-        kept = {
-            n: cells for n, cells in self._cells.items() if voters.get(n) is self._voters.get(n)
-        }
-        new = [n for n in voters if n not in kept]
-        made = in_parallel(lambda n: cells_of(voters[n], self._volume.grid), new)
-        self._cells = {**kept, **dict(zip(new, made, strict=True))}
+        new = [n for n in voters if n not in self._cells]
+        made = in_parallel(lambda n: cells_of(voters[n], self._grid), new)
+        self._cells.update(zip(new, made, strict=True))
         tables = tables_of(voters, self._cells)
-        layers = slab_layers(self._volume.grid)
+        layers = slab_layers(self._grid)
         votes = self._volume.votes
 
         def work(number: int) -> Slab:
-            return exact_slab(votes, threshold, layers[number], tables)
+            old = before[number]
+            if old is None or changes is None:
+                return exact_slab(votes, threshold, layers[number], tables)
+            return renewed_slab(votes, threshold, layers[number], tables, old, changes)
 
         for number, slab in zip(missing, in_parallel(work, missing), strict=True):
             self._slabs[number] = slab
 
 
-def meshed(volume: VoteVolume, threshold: int | None = None) -> Surface:
+def meshed(volume: VoteCounts, threshold: int | None = None) -> Surface:
     """Return the exact surface from scratch, by default at the volume's own threshold.
 
     Raises:
@@ -140,7 +180,7 @@ def slab_layers(grid: VoxelGrid) -> list[tuple[int, int]]:
     return [(start, min(start + SLAB_PLANES, grid.shape[0])) for start in starts]
 
 
-def voting(volume: VoteVolume) -> dict[int, Voter]:
+def voting(volume: VoteCounts) -> dict[int, Voter]:
     """Return the views of a volume that vote, by number."""
     return {number: voter for number, voter in volume.voters.items() if voter.votes}
 
@@ -164,14 +204,45 @@ def exact_slab(
     threshold: int,
     layers: tuple[int, int],
     tables: CrossingTables,
-    low: tuple[int, int, int] = (0, 0, 0),
 ) -> Slab:
-    """Return one slab's mesh with every vertex where the hull's boundary is.
-
-    The votes may be those of a window that begins at voxel `low` and in which layers are counted.
-    """
+    """Return one slab's mesh with every vertex where the hull's boundary is."""
     crossed, faces = mesh_slab(votes, threshold, *layers, triangle_table(), edge_tables())
-    vertices, _ = cross_grid_edges(
+    vertices = exact_vertices(crossed, votes, threshold, tables)
+    return Slab(
+        vertices=vertices, faces=faces, crossed=crossed, ends=_misses(crossed, votes, tables)
+    )
+
+
+def renewed_slab(
+    votes: Votes,
+    threshold: int,
+    layers: tuple[int, int],
+    tables: CrossingTables,
+    old: Slab,
+    changes: Sequence[ChangedEdges],
+) -> Slab:
+    """Return what `exact_slab` does, but search only the crossings that are not as in `old`."""
+    crossed, faces = mesh_slab(votes, threshold, *layers, triangle_table(), edge_tables())
+    ends = _misses(crossed, votes, tables)
+    kept = kept_crossings(crossed, ends, old.crossed, old.ends, changes)
+    vertices = old.vertices[kept] if len(old.vertices) else np.empty((len(crossed), 3))
+    sought = np.flatnonzero(kept < 0)
+    vertices[sought] = exact_vertices(crossed[sought], votes, threshold, tables)
+    return Slab(vertices=vertices, faces=faces, crossed=crossed, ends=ends)
+
+
+def exact_vertices(
+    crossed: NDArray[np.int32],
+    votes: Votes,
+    threshold: int,
+    tables: CrossingTables,
+    low: tuple[int, int, int] = (0, 0, 0),
+) -> Floats:
+    """Return where the hull's boundary crosses grid edges, (edges, 3) in the grid's voxel indices.
+
+    The votes may be those of a window that begins at voxel `low` and in which edges are counted.
+    """
+    vertices: Floats = cross_grid_edges(
         crossed,
         votes,
         np.array(low),
@@ -182,11 +253,15 @@ def exact_slab(
         tables.starts,
         tables.edges,
         tables.lines,
-    )
-    return Slab(vertices=vertices, faces=faces)
+    )[0]
+    return vertices
 
 
-def joined_surface(slabs: list[Slab], grid: VoxelGrid) -> Surface:
+def _misses(crossed: NDArray[np.int32], votes: Votes, tables: CrossingTables) -> NDArray[np.uint16]:
+    return end_misses(crossed, votes, len(tables.to_image))
+
+
+def joined_surface(slabs: Sequence[SlabMesh], grid: VoxelGrid) -> Surface:
     """Return consecutive slabs as one surface in metres."""
     vertex_ends = np.cumsum([0] + [len(slab.vertices) for slab in slabs])
     face_ends = np.cumsum([0] + [len(slab.faces) for slab in slabs])

@@ -1,10 +1,5 @@
-"""Checks of an outline's rings, and the step outward that makes "on" mean "inside".
+"""Checks of an outline's rings, and the step outward that makes "on" mean "inside"."""
 
-Only the search for edges that meet is compiled: it is the one part whose work grows faster than
-the outline, and every compiled line costs time at the very first start.
-"""
-
-import itertools
 from typing import Any
 
 import numba
@@ -12,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.arrays import Floats
-from core.hull.threads import Compiled
+from core.hull.threads import InnerLoop
 
 NEAREST_PX = 1e-6
 """Edges that come nearer to each other than this are taken to touch."""
@@ -27,33 +22,68 @@ def prepared(points: Floats, offsets: Indices) -> bool:
         points: (points, 2) of closed rings after one another, first points repeated.
         offsets: (rings + 1,) where each starts.
     """
-    rings = [points[a:b] for a, b in itertools.pairwise(offsets)]
-    if any(_is_too_short(ring) for ring in rings) or _edges_meet(points, offsets):
+    if _any_too_short(points, offsets) or _edges_meet(points, offsets):
         return False
-    for ring in rings:
-        surrounding = sum(_holds(other, ring[0]) for other in rings if other is not ring)
-        if (_area(ring) < 0) != (surrounding % 2 == 1):
-            ring[:] = ring[::-1].copy()
+    _turn(points, offsets)
     return True
 
 
-def _is_too_short(ring: Floats) -> bool:
-    return bool(np.any(np.sum(np.diff(ring, axis=0) ** 2, axis=1) <= NEAREST_PX**2))
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _any_too_short(points: Floats, offsets: Indices) -> bool:  # pragma: no cover - compiled
+    for ring in range(len(offsets) - 1):
+        for i in range(offsets[ring], offsets[ring + 1] - 1):
+            r, c = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
+            if r * r + c * c <= NEAREST_PX**2:
+                return True
+    return False
 
 
-def _area(ring: Floats) -> float:
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _turn(points: Floats, offsets: Indices) -> None:  # pragma: no cover - compiled
+    """Run each ring clockwise, or the other way if an odd number of others surround it."""
+    for ring in range(len(offsets) - 1):
+        first, last = offsets[ring], offsets[ring + 1]
+        inward = False
+        for other in range(len(offsets) - 1):
+            if other != ring and _holds(points, offsets[other], offsets[other + 1], first):
+                inward = not inward
+        if (_area(points, first, last) < 0) != inward:
+            _reverse(points, first, last - 1)
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _reverse(points: Floats, first: int, last: int) -> None:  # pragma: no cover - compiled
+    while first < last:
+        for axis in range(2):
+            kept = points[first, axis]
+            points[first, axis] = points[last, axis]
+            points[last, axis] = kept
+        first, last = first + 1, last - 1
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _area(points: Floats, first: int, last: int) -> float:  # pragma: no cover - compiled
     """Return twice the area of a closed ring, positive if clockwise (rows down, columns right)."""
-    row, column = (ring - ring[0]).T
-    return float(np.sum(column[:-1] * row[1:] - row[:-1] * column[1:]))
+    area = 0.0
+    for i in range(first, last - 1):
+        # Seen from the ring's first point, so that a far place in the image costs no digits.
+        r1, c1 = points[i, 0] - points[first, 0], points[i, 1] - points[first, 1]
+        r2, c2 = points[i + 1, 0] - points[first, 0], points[i + 1, 1] - points[first, 1]
+        area += c1 * r2 - r1 * c2
+    return area
 
 
-def _holds(ring: Floats, point: Floats) -> bool:
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _holds(points: Floats, first: int, last: int, at: int) -> bool:  # pragma: no cover - compiled
     """Return whether a closed ring surrounds a point that is not on it."""
-    tail, head = ring[:-1], ring[1:]
-    crosses = (tail[:, 0] > point[0]) != (head[:, 0] > point[0])
-    tail, head = tail[crosses], head[crosses]
-    part = (point[0] - tail[:, 0]) / (head[:, 0] - tail[:, 0])
-    return int(np.sum(tail[:, 1] + part * (head[:, 1] - tail[:, 1]) > point[1])) % 2 == 1
+    inside = False
+    row, column = points[at, 0], points[at, 1]
+    for i in range(first, last - 1):
+        tail, head = points[i, 0], points[i + 1, 0]
+        if (tail > row) != (head > row):
+            part = (row - tail) / (head - tail)
+            inside ^= points[i, 1] + part * (points[i + 1, 1] - points[i, 1]) > column
+    return inside
 
 
 def _edges_meet(points: Floats, offsets: Indices) -> bool:
@@ -68,7 +98,7 @@ def _edges_meet(points: Floats, offsets: Indices) -> bool:
     return bool(_any_meet(points, nexts, low, order))
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _any_meet(
     points: Floats, nexts: Indices, low: Floats, order: Indices
 ) -> bool:  # pragma: no cover - compiled
@@ -87,7 +117,7 @@ def _any_meet(
     return False
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _folds_back(points: Floats, i: int, j: int) -> Any:  # pragma: no cover - compiled
     """Return whether edge j, which follows edge i, runs back along it."""
     ar, ac = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
@@ -96,7 +126,7 @@ def _folds_back(points: Floats, i: int, j: int) -> Any:  # pragma: no cover - co
     return ar * br + ac * bc < 0 and abs(ar * bc - ac * br) <= NEAREST_PX * size
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _meet(points: Floats, i: int, j: int) -> bool:  # pragma: no cover - compiled
     """Return whether two edges cross, touch, or all but touch."""
     a, b, c, d = points[i, 1], points[i + 1, 1], points[j, 1], points[j + 1, 1]
@@ -105,7 +135,7 @@ def _meet(points: Floats, i: int, j: int) -> bool:  # pragma: no cover - compile
     return not (_apart(points, i, j) or _apart(points, j, i))
 
 
-@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _apart(points: Floats, i: int, j: int) -> Any:  # pragma: no cover - compiled
     """Return whether edge j lies wholly on one side of the line through edge i."""
     r, c = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
@@ -128,27 +158,45 @@ def outset(points: Floats, offsets: Indices, distance: float) -> tuple[Floats, I
     Returns:
         The same form: points and offsets.
     """
-    moved = [_outset_ring(points[a : b - 1], distance) for a, b in itertools.pairwise(offsets)]
-    starts = np.zeros_like(offsets)
-    starts[1:] = np.cumsum([len(ring) for ring in moved])
-    return np.concatenate(moved), starts
+    moved, starts = np.empty((2 * len(points), 2)), np.zeros_like(offsets)
+    _outset_rings(points, offsets, distance, moved, starts)
+    return moved[: starts[-1]].copy(), starts
 
 
-def _outset_ring(ring: Floats, distance: float) -> Floats:
-    """Return one ring (vertices, 2) moved outward and closed by its first point."""
-    after = np.roll(ring, -1, axis=0) - ring
-    length = np.sqrt(after[:, 0] * after[:, 0] + after[:, 1] * after[:, 1])
-    r2, c2 = (after / length[:, None]).T
-    r1, c1 = np.roll(r2, 1), np.roll(c2, 1)
-    is_tip = (r1 * c2 - c1 * r2 < 0) & (r1 * r2 + c1 * c2 < -0.5)
-    normal = np.column_stack([-(c1 + c2), r1 + r2])
-    size = np.where(is_tip, 1.0, np.sqrt(normal[:, 0] * normal[:, 0] + normal[:, 1] * normal[:, 1]))
-    shortest = 0.5 * np.minimum(np.roll(length, 1), length)
-    reach = np.minimum(2 * distance / size, shortest) / size
-    first = ring + reach[:, None] * normal
-    first[is_tip] = (ring + distance * np.column_stack([r1 - c1, c1 + r1]))[is_tip]
-    second = ring + distance * np.column_stack([-(r2 + c2), r2 - c2])
-    both = np.stack([first, second], axis=1).reshape(-1, 2)
-    kept = np.column_stack([np.ones(len(ring), dtype=bool), is_tip]).ravel()
-    closed: Floats = both[kept]
-    return np.concatenate([closed, closed[:1]])
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _outset_rings(
+    points: Floats, offsets: Indices, distance: float, moved: Floats, starts: Indices
+) -> None:  # pragma: no cover - compiled
+    """Write the moved points and where each ring of them starts."""
+    count = 0
+    for ring in range(len(offsets) - 1):
+        first, last, own = offsets[ring], offsets[ring + 1] - 1, count
+        for i in range(first, last):
+            before = i - 1 if i > first else last - 1
+            count = _outset_vertex(points, before, i, distance, moved, count)
+        moved[count, 0], moved[count, 1] = moved[own, 0], moved[own, 1]
+        count += 1
+        starts[ring + 1] = count
+
+
+@numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
+def _outset_vertex(
+    points: Floats, before: int, i: int, distance: float, moved: Floats, count: int
+) -> int:  # pragma: no cover - compiled
+    """Write one vertex moved outward, a sharp tip as two; return how many there are by now."""
+    r1, c1 = points[i, 0] - points[before, 0], points[i, 1] - points[before, 1]
+    r2, c2 = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
+    one, two = np.sqrt(r1 * r1 + c1 * c1), np.sqrt(r2 * r2 + c2 * c2)
+    r1, c1, r2, c2 = r1 / one, c1 / one, r2 / two, c2 / two
+    if r1 * c2 - c1 * r2 < 0 and r1 * r2 + c1 * c2 < -0.5:
+        moved[count, 0] = points[i, 0] + distance * (r1 - c1)
+        moved[count, 1] = points[i, 1] + distance * (c1 + r1)
+        moved[count + 1, 0] = points[i, 0] - distance * (r2 + c2)
+        moved[count + 1, 1] = points[i, 1] + distance * (r2 - c2)
+        return count + 2
+    normal_r, normal_c = -(c1 + c2), r1 + r2
+    size = np.sqrt(normal_r * normal_r + normal_c * normal_c)
+    reach = min(2 * distance / size, 0.5 * min(one, two)) / size
+    moved[count, 0] = points[i, 0] + reach * normal_r
+    moved[count, 1] = points[i, 1] + reach * normal_c
+    return count + 1

@@ -7,7 +7,7 @@ from skimage.measure import marching_cubes
 from core.geometry.grid import VoxelGrid
 from core.hull.closed_mesh import Surface
 from core.hull.mesher import meshed
-from core.hull.votes import VoteVolume
+from core.hull.votes import VoteCounts
 
 __all__ = ["Surface", "hull_surface", "mask_surface"]
 
@@ -15,7 +15,7 @@ __all__ = ["Surface", "hull_surface", "mask_surface"]
 EMPTY_SURFACE = Surface(vertices_m=np.empty((0, 3)), faces=np.empty((0, 3), dtype=np.int32))
 
 
-def hull_surface(volume: VoteVolume, threshold: int | None = None) -> Surface:
+def hull_surface(volume: VoteCounts, threshold: int | None = None) -> Surface:
     """Return the exact surface of the hull with at least `threshold` votes.
 
     Between the voxels inside and outside it stands where the outlines put it; a hull that reaches

@@ -1,4 +1,4 @@
-"""The vote volume: how many views see each voxel inside or on their silhouette.
+"""Vote counts: how many views see each voxel inside or on their silhouette.
 
 A vote is the paper's test (eqs. 20 to 24) on the outline itself, never on a rasterised mask.
 """
@@ -71,7 +71,7 @@ class Voter:
         return pulled_back(outline.points, outline.offsets, weights, self.to_image, self.axis)
 
 
-class VoteVolume:
+class VoteCounts:
     """Votes of any number of views on one grid.
 
     One thread writes at a time, any number may read: every method waits for a running change to

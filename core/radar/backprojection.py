@@ -7,12 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.arrays import Floats
-from core.frame import Frame
-from core.geometry.projection import range_doppler_projection
-from core.geometry.track import accumulated_turn_rad
+from core.radar.aperture import aperture_weights, wave_directions
 from core.radar.phase_history import PhaseHistory
 from core.radar.waveform import SPEED_OF_LIGHT_M_PER_S
-from core.radar.window import HALF_POWER_WIDTH_CELLS, hamming
+from core.radar.window import HAMMING, Window
 
 OVERSAMPLING = 16
 """Samples of a range profile per Rayleigh cell; linear interpolation errs by at most 0.5 %."""
@@ -24,16 +22,19 @@ WORKERS = 4
 """Threads that share the blocks of an image; the kernel holds no lock."""
 
 
-def backproject(history: PhaseHistory, points_m: Floats) -> NDArray[np.complex64]:
+def backproject(
+    history: PhaseHistory, points_m: Floats, *, window: Window = HAMMING
+) -> NDArray[np.complex64]:
     """Return the complex image at points (…, 3) of the target frame, a unit point giving 1.
 
-    Hamming windows weigh frequency and turn. Points outside the unambiguous swath of a pulse,
-    c / 4Δf on either side of the origin, get nothing from it.
+    Points outside the unambiguous swath of a pulse, c / 4Δf on either side of the origin, get
+    nothing from it.
 
     Args:
         history: with the track's range_m the wavefronts are spheres about the radar, without they
             are planes.
         points_m: where to image; any plane or surface.
+        window: weighs frequency and turn.
 
     Returns:
         (…) complex64, the shape of `points_m` without its last axis.
@@ -44,81 +45,31 @@ def backproject(history: PhaseHistory, points_m: Floats) -> NDArray[np.complex64
     track = history.track
     points = np.asarray(points_m, dtype=np.float64)
     flat = np.ascontiguousarray(points.reshape(-1, 3))
-    profiles, cell_m = _range_profiles(history)
+    profiles, cell_m = _range_profiles(history, window)
     range_m = np.full(len(track), np.inf) if track.range_m is None else track.range_m
-    wavenumber = 4 * np.pi / history.wavelength_m
+    wavenumber = 4 * np.pi / SPEED_OF_LIGHT_M_PER_S * float(history.frequency_hz.mean())
+    directions = np.ascontiguousarray(wave_directions(history, slice(None)))
     image = np.zeros(len(flat), dtype=np.complex128)
 
     def add_block(start: int) -> None:
         where = slice(start, start + BLOCK_POINTS)
-        _accumulate(
-            profiles, cell_m, wavenumber, track.line_of_sight, range_m, flat[where], image[where]
-        )
+        _accumulate(profiles, cell_m, wavenumber, directions, range_m, flat[where], image[where])
 
     with ThreadPoolExecutor(WORKERS) as pool:
         list(pool.map(add_block, range(0, len(flat), BLOCK_POINTS)))
     return image.astype(np.complex64).reshape(points.shape[:-1])
 
 
-def backprojected_frame(
-    history: PhaseHistory,
-    *,
-    shape: tuple[int, int] = (1024, 1024),
-    row_spacing_m: float = 0.1,
-    column_spacing_m: float = 0.1,
-    label: str = "",
-) -> Frame:
-    """Return the image of a whole phase history on the slant plane of its middle pulse.
-
-    Rows grow with range along k, columns with cross-range along dk/dt, both at the middle pulse;
-    the target frame's origin lies at (rows // 2, columns // 2).
-
-    Raises:
-        ValueError: a spacing that is not positive, or an image of fewer than 2 pixels a side.
-    """
-    if not (row_spacing_m > 0 and column_spacing_m > 0 and min(shape) >= 2):
-        raise ValueError(
-            f"An image needs positive pixel spacings and at least 2 × 2 pixels; got "
-            f"{row_spacing_m} m, {column_spacing_m} m and {shape}."
-        )
-    track, middle = history.track, len(history.track) // 2
-    projection = range_doppler_projection(
-        line_of_sight=track.line_of_sight[middle],
-        line_of_sight_rate_per_s=track.line_of_sight_rate_per_s[middle],
-        row_spacing_m=row_spacing_m,
-        column_spacing_m=column_spacing_m,
-        shape=shape,
-    )
-    pixels = np.stack(np.meshgrid(*map(np.arange, shape), indexing="ij"), axis=-1).astype(
-        np.float64
-    )
-    turn_rad = float(accumulated_turn_rad(track.line_of_sight)[-1])
-    return Frame(
-        amplitude=np.abs(backproject(history, projection.plane_points(pixels))),
-        projection=projection,
-        time_s=float(track.time_s[middle]),
-        sensor="radar",
-        line_of_sight=track.line_of_sight[middle],
-        row_spacing_m=row_spacing_m,
-        column_spacing_m=column_spacing_m,
-        row_resolution_m=HALF_POWER_WIDTH_CELLS
-        * SPEED_OF_LIGHT_M_PER_S
-        / (2 * history.bandwidth_hz),
-        column_resolution_m=HALF_POWER_WIDTH_CELLS * history.wavelength_m / (2 * turn_rad),
-        label=label,
-    )
-
-
-def _range_profiles(history: PhaseHistory) -> tuple[NDArray[np.complex64], float]:
+def _range_profiles(history: PhaseHistory, window: Window) -> tuple[NDArray[np.complex64], float]:
     """Return weighted range profiles (pulses, cells) about the origin, and the cell's length.
 
     The middle of the band is taken out, so that a profile varies slowly from cell to cell.
     """
-    turn = accumulated_turn_rad(history.track.line_of_sight)
-    count = len(history.frequency_hz)
-    weights = hamming(turn / turn[-1])[:, None] * hamming(np.linspace(0, 1, count))
+    by_pulse, by_frequency = aperture_weights(history, slice(None), window)
+    count = len(by_frequency)
+    weights = np.multiply.outer(by_pulse, by_frequency)
     cells = OVERSAMPLING * 2 ** int(np.ceil(np.log2(count)))
-    spectrum = np.fft.ifft(history.samples * (weights / weights.sum()), cells, axis=1)
+    spectrum = np.fft.ifft(history.samples * weights, cells, axis=1)
     place = np.arange(cells) - cells // 2
     to_middle = np.exp(-1j * np.pi * (count - 1) * place / cells)
     profiles = np.fft.fftshift(spectrum, axes=1) * (cells * to_middle)

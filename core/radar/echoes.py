@@ -1,25 +1,44 @@
-"""Echo simulation: what a radar would receive from surface scatterers."""
+"""Echo simulation: what a radar would receive from a target, and with what noise."""
 
 from collections.abc import Callable, Iterator
 from itertools import pairwise
+from typing import Protocol
 
-import finufft
 import numpy as np
 from numpy.typing import NDArray
 
 from core.arrays import Floats
 from core.geometry.track import LineOfSightTrack, accumulated_turn_rad
 from core.radar.phase_history import PhaseHistory
-from core.radar.scatterers import Scatterers, lit_amplitudes
-from core.radar.waveform import SPEED_OF_LIGHT_M_PER_S, Waveform
+from core.radar.scatterers import point_echoes
+from core.radar.waveform import Waveform
 
-TRANSFORM_PRECISION = 1e-4
-"""Asked of the nonuniform Fourier transform; 18 000 scatterers' echoes then differ from the exact
-ones by 5·10⁻⁵ (−86 dB) rms, far below any receiver's noise."""
+__all__ = ["ScatteringModel", "point_echoes", "receiver_noise", "simulate_echoes"]
+
+
+class ScatteringModel(Protocol):
+    """What a target returns: diffuse points, a conducting surface, or a mixture of such."""
+
+    def reach_m(self) -> float:
+        """Return how far from the origin anything scatters."""
+
+    def mean_echo_power(self) -> float:
+        """Return the echo power averaged over all aspects, in m²."""
+
+    def echoes(self, direction: Floats, frequency_hz: Floats) -> NDArray[np.complex64]:
+        """Return noiseless echoes of pulses between which the lit side hardly changes.
+
+        Args:
+            direction: (pulses, 3) as `LineOfSightTrack.phase_direction` gives it.
+            frequency_hz: (frequencies,) evenly spaced.
+
+        Returns:
+            (pulses, frequencies) with the phase that a `PhaseHistory` defines.
+        """
 
 
 def simulate_echoes(
-    scatterers: Scatterers,
+    target: ScatteringModel,
     track: LineOfSightTrack,
     waveform: Waveform,
     *,
@@ -30,17 +49,19 @@ def simulate_echoes(
 ) -> PhaseHistory:
     """Return the phase history of a self-shadowing target along a track.
 
-    Every sample is the sum of the lit scatterers' echoes at the pulse's own line of sight
+    Every sample is the sum of what the lit side returns at the pulse's own line of sight
     (eqs. 1 and 2, after pulse compression and motion compensation to the target's origin), plus
-    white receiver noise. Which scatterers are lit is decided anew by ray casting whenever the
-    line of sight has turned by `shadow_step_rad`, about one coherent interval.
+    white receiver noise. What is lit is decided anew by ray casting whenever the line of sight
+    has turned by `shadow_step_rad`, about one coherent interval. A bistatic pair's shadows are
+    those of its bisector.
 
     Args:
-        scatterers: what scatters, target frame.
+        target: what scatters: `core.radar.scattering_models` makes one from a body.
         track: the line of sight at every pulse.
         waveform: band and sampling.
-        signal_to_noise_db: mean echo power over all aspects (`Scatterers.mean_echo_power`) to
-            noise power, both per pulse and frequency sample.
+        signal_to_noise_db: mean echo power over all aspects (`mean_echo_power`) to noise power,
+            both per pulse and frequency sample. It does not depend on which aspects a pass
+            shows, nor on whether the target flashes there.
         random: for the noise.
         shadow_step_rad: largest turn over which the lit side is held.
         progress: told how many pulses are done, of how many.
@@ -48,7 +69,7 @@ def simulate_echoes(
     Raises:
         ValueError: the target is larger than the waveform's unambiguous range.
     """
-    reach_m = 2 * float(np.linalg.norm(scatterers.position_m, axis=1).max())
+    reach_m = 2 * target.reach_m()
     if reach_m > waveform.unambiguous_range_m:
         raise ValueError(
             f"The target spans {reach_m:.1f} m about its origin, more than the waveform's "
@@ -56,58 +77,13 @@ def simulate_echoes(
         )
     frequency = waveform.frequencies_hz()
     samples = np.empty((len(track), len(frequency)), dtype=np.complex64)
+    direction = track.phase_direction()
     for start, stop in _steady_blocks(track, shadow_step_rad):
-        middle = (start + stop) // 2
-        amplitude = lit_amplitudes(scatterers, track.line_of_sight[middle])
-        lit = np.flatnonzero(amplitude)
-        samples[start:stop] = point_echoes(
-            scatterers.position_m[lit],
-            amplitude[lit],
-            track.line_of_sight[start:stop],
-            frequency,
-        )
+        samples[start:stop] = target.echoes(direction[start:stop], frequency)
         progress(stop, len(track))
-    noise_power = scatterers.mean_echo_power() * 10 ** (-signal_to_noise_db / 10)
+    noise_power = target.mean_echo_power() * 10 ** (-signal_to_noise_db / 10)
     samples += receiver_noise(samples.shape, noise_power, random)
     return PhaseHistory(samples=samples, frequency_hz=frequency, track=track)
-
-
-def point_echoes(
-    position_m: Floats,
-    amplitude: NDArray[np.complex128],
-    line_of_sight: Floats,
-    frequency_hz: Floats,
-) -> NDArray[np.complex64]:
-    """Return Σ a exp(−j 4π f k·p / c) for every pulse and frequency, (pulses, frequencies).
-
-    Args:
-        position_m: (points, 3), target frame.
-        amplitude: (points,) complex.
-        line_of_sight: (pulses, 3) unit vectors.
-        frequency_hz: (frequencies,).
-
-    Source: eq. 2 summed by a type-3 nonuniform transform (Barnett, Magland and af Klinteberg,
-    2019); the direct sum is the reference in the tests.
-    """
-    wavenumber = 4 * np.pi / SPEED_OF_LIGHT_M_PER_S * frequency_hz
-    vectors = (line_of_sight[:, None, :] * wavenumber[None, :, None]).reshape(-1, 3)
-    if len(position_m) == 0:
-        return np.zeros((len(line_of_sight), len(frequency_hz)), dtype=np.complex64)
-    # Taking the middle wave vector out in double precision leaves a few hundred radians of phase,
-    # which single precision carries at half the time.
-    centre = vectors.mean(axis=0)
-    shifted = amplitude * np.exp(-1j * (position_m @ centre))
-    echoes = finufft.nufft3d3(
-        *np.ascontiguousarray(position_m.T, dtype=np.float32),
-        shifted.astype(np.complex64),
-        *np.ascontiguousarray((vectors - centre).T, dtype=np.float32),
-        eps=TRANSFORM_PRECISION,
-        upsampfac=1.25,
-        isign=-1,
-        nthreads=1,  # several add in any order, and the last digits change from run to run
-    )
-    shape = (len(line_of_sight), len(frequency_hz))
-    return np.asarray(echoes, dtype=np.complex64).reshape(shape)
 
 
 def receiver_noise(

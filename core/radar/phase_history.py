@@ -15,7 +15,9 @@ class PhaseHistory:
     """Complex echoes over pulses and frequencies, referred to the target frame's origin.
 
     A unit point at p returns exp(−j 4π f (R(p) − R(0)) / c), where R is its distance from the
-    radar; far away that is exp(−j 4π f k·p / c).
+    radar; far away that is exp(−j 4π f k·p / c). For a bistatic pair k is cos(β/2) times the
+    bisector; its band and wavelength are given as one radar on the bisector would need them for
+    the same echoes.
 
     Attributes:
         samples: (pulses, frequencies) complex64.
@@ -45,18 +47,23 @@ class PhaseHistory:
 
     @property
     def wavelength_m(self) -> float:
-        """Wavelength at the middle of the band."""
-        return SPEED_OF_LIGHT_M_PER_S / float(self.frequency_hz.mean())
+        """Wavelength at the middle of the band, over cos(β/2) for a bistatic pair."""
+        return SPEED_OF_LIGHT_M_PER_S / (float(self.frequency_hz.mean()) * self._scale)
 
     @property
     def bandwidth_hz(self) -> float:
-        """Width of the band, half a step beyond the outer samples."""
-        return float(self.frequency_hz[-1] - self.frequency_hz[0]) + self.frequency_step_hz
+        """Width of the band, half a step beyond the outer samples, times cos(β/2) for a pair."""
+        return self.frequency_step_hz * len(self.frequency_hz) * self._scale
 
     @property
     def frequency_step_hz(self) -> float:
         """Distance between frequency samples."""
         return float(self.frequency_hz[-1] - self.frequency_hz[0]) / (len(self.frequency_hz) - 1)
+
+    @property
+    def _scale(self) -> float:
+        scale = self.track.bisector_scale
+        return 1.0 if scale is None else float(scale.mean())
 
     def part(self, start: int, stop: int) -> "PhaseHistory":
         """Return pulses start … stop − 1."""

@@ -1,16 +1,23 @@
 """Surface scatterers: the fast diffuse model of what the radar sees."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+import finufft
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
 from core.arrays import Floats, frozen
+from core.radar.waveform import SPEED_OF_LIGHT_M_PER_S
 from core.targets import Target
 
 SURFACE_OFFSET_M = 1e-3
 """Rays start this far off the surface, or they would meet their own facet."""
+
+
+TRANSFORM_PRECISION = 1e-4
+"""Asked of the nonuniform Fourier transform; 18 000 scatterers' echoes then differ from the exact
+ones by 5·10⁻⁵ (−86 dB) rms, far below any receiver's noise."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -36,6 +43,25 @@ class Scatterers:
         object.__setattr__(self, "normal", frozen(self.normal, np.float64, (count, 3), "Normals"))
         reflectivity = frozen(self.reflectivity, np.complex128, (count,), "Reflectivities")
         object.__setattr__(self, "reflectivity", reflectivity)
+
+    def scaled(self, factor: float) -> "Scatterers":
+        """Return the same points with amplitudes times a factor."""
+        return replace(self, reflectivity=self.reflectivity * factor)
+
+    def reach_m(self) -> float:
+        """Return how far from the origin the farthest point lies."""
+        return float(np.linalg.norm(self.position_m, axis=1).max())
+
+    def echoes(self, direction: Floats, frequency_hz: Floats) -> NDArray[np.complex64]:
+        """Return the echoes of pulses that all light what the middle one lights.
+
+        Args:
+            direction: (pulses, 3) lines of sight k, or a bistatic pair's mean of two.
+            frequency_hz: (frequencies,).
+        """
+        amplitude = lit_amplitudes(self, middle_line_of_sight(direction))
+        lit = np.flatnonzero(amplitude)
+        return point_echoes(self.position_m[lit], amplitude[lit], direction, frequency_hz)
 
     def mean_echo_power(self) -> float:
         """Return the echo power averaged over all aspects, in m².
@@ -71,6 +97,51 @@ def surface_scatterers(target: Target, *, count: int, random: np.random.Generato
         reflectivity=np.sqrt(mesh.area / count) * np.exp(1j * phase),
         mesh=mesh,
     )
+
+
+def point_echoes(
+    position_m: Floats,
+    amplitude: NDArray[np.complex128],
+    direction: Floats,
+    frequency_hz: Floats,
+) -> NDArray[np.complex64]:
+    """Return Σ a exp(−j 4π f k·p / c) for every pulse and frequency, (pulses, frequencies).
+
+    Args:
+        position_m: (points, 3), target frame.
+        amplitude: (points,) complex.
+        direction: (pulses, 3) lines of sight k, or a bistatic pair's mean of two.
+        frequency_hz: (frequencies,).
+
+    Source: eq. 2 summed by a type-3 nonuniform transform (Barnett, Magland and af Klinteberg,
+    2019); the direct sum is the reference in the tests.
+    """
+    wavenumber = 4 * np.pi / SPEED_OF_LIGHT_M_PER_S * frequency_hz
+    vectors = (direction[:, None, :] * wavenumber[None, :, None]).reshape(-1, 3)
+    if len(position_m) == 0:
+        return np.zeros((len(direction), len(frequency_hz)), dtype=np.complex64)
+    # Taking the middle wave vector out in double precision leaves a few hundred radians of phase,
+    # which single precision carries at half the time.
+    centre = vectors.mean(axis=0)
+    shifted = amplitude * np.exp(-1j * (position_m @ centre))
+    echoes = finufft.nufft3d3(
+        *np.ascontiguousarray(position_m.T, dtype=np.float32),
+        shifted.astype(np.complex64),
+        *np.ascontiguousarray((vectors - centre).T, dtype=np.float32),
+        eps=TRANSFORM_PRECISION,
+        upsampfac=1.25,
+        isign=-1,
+        nthreads=1,  # several add in any order, and the last digits change from run to run
+    )
+    shape = (len(direction), len(frequency_hz))
+    return np.asarray(echoes, dtype=np.complex64).reshape(shape)
+
+
+def middle_line_of_sight(direction: Floats) -> Floats:
+    """Return the middle pulse's line of sight as a unit vector, (3,)."""
+    middle: Floats = direction[len(direction) // 2]
+    unit: Floats = middle / np.linalg.norm(middle)
+    return unit
 
 
 def lit_amplitudes(scatterers: Scatterers, line_of_sight: Floats) -> NDArray[np.complex128]:

@@ -13,7 +13,7 @@ from scipy.ndimage import distance_transform_edt, gaussian_filter
 
 from core.arrays import Floats
 from core.frame import Frame
-from core.radar.window import FIRST_NULL_CELLS, HALF_POWER_WIDTH_CELLS, point_response
+from core.radar.window import HAMMING, Window, window_named
 from core.silhouettes.cfar import Detection
 
 NEIGHBOURHOOD_CELLS = 2.5
@@ -42,12 +42,13 @@ def inward_distance_px(mask: NDArray[np.bool_], frame: Frame, detection: Detecti
     if not mask.any():
         return level
     box = _box_with_margin(mask)
-    cell_px = _rayleigh_cell_px(frame)
+    window = window_named(frame.window)
+    cell_px = _rayleigh_cell_px(frame, window)
     detected = detection.mask[box]
     signed, nearest = _signed_distance_px(mask[box], cell_px or (1.0, 1.0))
     if cell_px is not None:
         brightness = inner_power(frame.amplitude[box], detected, cell_px)
-        displacement = edge_displacement_cells(brightness, detection)
+        displacement = edge_displacement_cells(brightness, detection, window)
         signed -= (displacement * np.sqrt(cell_px[0] * cell_px[1]))[nearest[0], nearest[1]]
     level[box] = signed
     return level
@@ -73,38 +74,41 @@ def inner_power(
     return brightness
 
 
-def edge_displacement_cells(inner: Floats, detection: Detection) -> Floats:
+def edge_displacement_cells(
+    inner: Floats, detection: Detection, window: Window = HAMMING
+) -> Floats:
     """Return by how many Rayleigh cells the threshold is crossed outside an edge.
 
     Args:
         inner: mean power inside the target, any shape.
         detection: its threshold and background.
+        window: of the image.
     """
     # Rayleigh amplitudes: mean power is 4/π of the squared mean amplitude.
     noise_power = 4 / np.pi * detection.background_mean**2
     skirt = max(detection.threshold**2 - noise_power, 0.0)
     # No edge is crossed further inside than at half its power.
     ratio = skirt / np.maximum(inner, max(2 * skirt, np.finfo(float).tiny))
-    distance, spread = edge_spread()
+    distance, spread = edge_spread(window)
     displacement: Floats = np.interp(-np.maximum(ratio, spread[-1]), -spread, distance)
     return displacement
 
 
 @cache
-def edge_spread() -> tuple[Floats, Floats]:
+def edge_spread(window: Window = HAMMING) -> tuple[Floats, Floats]:
     """Return (distances in Rayleigh cells, mean power there relative to inside) at a straight edge.
 
     A bright half-plane of independent scatterers has half its inner power at its edge and falls
     with the integral of the point response's power; the table ends at the first null.
     """
     place = np.linspace(-8.0, 8.0, 32001)
-    share = np.cumsum(point_response(place) ** 2)
+    share = np.cumsum(window.point_response(place) ** 2)
     spread = 1 - share / share[-1]
-    skirt = (place >= 0) & (place <= FIRST_NULL_CELLS)
+    skirt = (place >= 0) & (place <= window.first_null_cells)
     return place[skirt], spread[skirt]
 
 
-def _rayleigh_cell_px(frame: Frame) -> tuple[float, float] | None:
+def _rayleigh_cell_px(frame: Frame, window: Window) -> tuple[float, float] | None:
     known = (
         frame.row_resolution_m,
         frame.column_resolution_m,
@@ -115,8 +119,8 @@ def _rayleigh_cell_px(frame: Frame) -> tuple[float, float] | None:
     if row_m is None or column_m is None or row_step_m is None or column_step_m is None:
         return None
     return (
-        row_m / HALF_POWER_WIDTH_CELLS / row_step_m,
-        column_m / HALF_POWER_WIDTH_CELLS / column_step_m,
+        row_m / window.half_power_width_cells / row_step_m,
+        column_m / window.half_power_width_cells / column_step_m,
     )
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.frame import Frame
+from core.radar.window import HAMMING, window_named
 from core.silhouettes.cfar import detect
 from core.silhouettes.contours import cleaned_mask, traced_rings
 from core.silhouettes.edge import inward_distance_px
@@ -27,7 +28,8 @@ class ExtractionSettings:
         smallest_part_px: parts and holes of fewer pixels disappear.
         sidelobe_level_db: pixels this far below the brightest of their row or column may be its
             sidelobes (−43 dB for the Hamming window, some 4 dB more where several add up) and
-            are not taken for target.
+            are not taken for target. It is meant for Hamming; for a frame of another window it
+            moves with that window's highest sidelobe.
         corrects_edge: whether the point spread's share of the edge is taken out.
     """
 
@@ -51,8 +53,9 @@ def extract_silhouette(frame: Frame, settings: ExtractionSettings | None = None)
         censoring_factor=settings.censoring_factor,
         detection_factor=settings.detection_factor,
     )
+    sidelobes_db = window_named(frame.window).highest_sidelobe_db - HAMMING.highest_sidelobe_db
     above_sidelobes = frame.amplitude > sidelobe_ceiling(
-        frame.amplitude, settings.sidelobe_level_db
+        frame.amplitude, settings.sidelobe_level_db + sidelobes_db
     )
     detection = replace(detection, mask=detection.mask & above_sidelobes)
     mask = cleaned_mask(

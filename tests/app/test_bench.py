@@ -25,6 +25,7 @@ def test_growth_draws_its_curves(tmp_path) -> None:
         ["carve", "--sizes", "2x1"],
         ["edit", "--repeats", "0"],
         ["edit", "--out", "plots"],
+        ["image", "--sizes", "64x4"],
     ],
 )
 def test_bad_input_is_one_line_and_exit_code_2(

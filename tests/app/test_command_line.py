@@ -105,6 +105,13 @@ def test_what_is_not_understood_is_said_in_one_line(capsys, words, wanted):
         ("--snr-db nan", "--snr-db wants decibels"),
         ("--snr-db -100000", "--snr-db wants decibels"),
         ("--seed -1", "--seed wants a whole number from 0 on"),
+        ("--carrier-hz 0", "must be a positive frequency in hertz, got 0"),
+        ("--model mixed --roughness 1.2", "0 to 1; got 1.2"),
+        ("--model physical-optics --bounces 0", "at least 1 bounces"),
+        ("--scatterers 0", "At least 1 scatterer"),
+        ("--phase-error-rad -0.1", "--phase-error-rad wants an rms error"),
+        ("--range-error-m inf", "--range-error-m wants an rms error"),
+        ("--range-drift-m nan", "--range-drift-m wants metres"),
         ("--json /nonexistent/facts.json", "no folder /nonexistent"),
     ],
 )
@@ -161,6 +168,46 @@ def test_measured_echoes_are_imported_and_focused(capsys, shared_data, tmp_path)
     run(capsys, "image", passed, framed, *options)
     (frame,) = read_pass(framed).frames
     assert frame.shape == (128, 128)
+
+
+def test_every_method_gives_the_same_intervals(capsys, one_frame, tmp_path):
+    echoes, out = one_frame[0], tmp_path / "out.h5"
+    seen = []
+    for method in ("polar", "keystone", "range-doppler", "backprojection"):
+        options = ("--method", method, "--divide", "yes", "--pixels", 64, "--oversampling", 2)
+        told = json.loads(run(capsys, "image", echoes, out, *options, "--json", "-"))
+        assert (told["method"], told["frames"], told["column_spacing_m"]) == (method, 1, 0.075)
+        (frame,) = read_pass(out).frames
+        seen.append(frame.amplitude)
+        assert frame.column_spacing_m == 0.075
+    polar, keystone, _, backprojected = seen
+    for other in (keystone, backprojected):
+        assert np.abs(other - polar).max() < 0.03 * polar.max()
+
+
+def test_verdicts_are_told_and_written(capsys, echoes, tmp_path):
+    out = tmp_path / "out.h5"
+    sharp = ("--target-radius-m", 8.7, "--coarsest-resolution-m", 0.28, "--window", "taylor")
+    sharp = (*sharp, "--pixels", 64)
+    said = run(capsys, "image", echoes, out, *sharp)
+    assert re.search(r"Of \d+ intervals: 0 accepted, \d+ shortened, \d+ rejected", said)
+    assert re.search(r"Unsuitable from .* s, zenith part: θ̈ and φ̈ make .* more than π/4", said)
+    told = json.loads(run(capsys, "image", echoes, out, *sharp, "--json", "-"))
+    assert told["window"] == "taylor -35 dB nbar 5"
+    statuses = [interval["status"] for interval in told["intervals"]]
+    assert told["verdicts"] == {
+        status: statuses.count(status) for status in ("accepted", "shortened", "rejected")
+    }
+    assert told["frames"] == len(statuses) - statuses.count("rejected")
+    assert {part["part"] for part in told["unsuitable"]} == {
+        "zenith part",
+        "unevenly turning part",
+    }
+    by_bending = (*sharp, "--criterion", "bending", "--json", "-")
+    told = json.loads(run(capsys, "image", echoes, out, *by_bending))
+    assert told["verdicts"]["rejected"] == 0
+    line = refused(capsys, "image", echoes, out, "--target-radius-m", 20)
+    assert "unambiguous in range over 38.4 m only" in line
 
 
 def test_a_damaged_mesh_writes_nothing(capsys, tmp_path):
@@ -259,6 +306,10 @@ def test_options_of_the_other_experiment_are_refused(capsys, words, wanted):
 @pytest.mark.parametrize(
     ("words", "wanted"),
     [
+        ("image {pass} {out}/out.h5 --oversampling 0.2", "1 to 64; got 0.2"),
+        ("image {pass} {out}/out.h5 --oversampling 2 --column-spacing-m 1", "not both"),
+        ("image {pass} {out}/out.h5 --target-radius-m 5 --divide no", "with --divide yes"),
+        ("image {pass} {out}/out.h5 --window taylor --taylor-nbar 1", "nbar of 2 to 20"),
         ("image {pass} {out}/out.h5 --picture {out}/p.jpg", "must end in .png"),
         ("image {pass} {out}/out.h5 --json {out}/no/a.json", "no folder"),
         ("image {pass} {out}/out.txt", "must end in .h5, .hdf5"),
@@ -283,6 +334,23 @@ def test_a_simulation_is_summarised_for_machines(capsys, tmp_path):
     assert (told["pulses"], told["frequencies"]) == history.samples.shape
     assert history.samples.shape[1] == 192
     assert told["epoch_utc"] == history.track.epoch_utc
+
+
+def test_a_pass_of_a_mirror_is_simulated_with_errors(capsys, tmp_path):
+    words = ("--mask-deg", 42.0, "--frequency-count", 192, "--model", "mixed", "--prf-hz", 5)
+    rough = ("--roughness", 0.2, "--scatterers", 500, "--bounces", 1)
+    clean, shaken = tmp_path / "clean.h5", tmp_path / "shaken.h5"
+    told = json.loads(run(capsys, "simulate", clean, *words, *rough, "--json", "-"))
+    assert (told["model"], told["roughness"], told["bounces"]) == ("mixed", 0.2, 1)
+    run(capsys, "simulate", shaken, *words, *rough, "--phase-error-rad", 0.5, "--range-drift-m", 1)
+    before, after = (read_pass(path).history for path in (clean, shaken))
+    turn = np.angle(after.samples / before.samples)
+    wavenumber = 4 * np.pi / 299_792_458.0 * before.frequency_hz
+    drift = np.linspace(-1, 1, len(turn)) ** 2
+    phase = np.exp(1j * (turn + np.outer(drift, wavenumber)))
+    # What the drift leaves is one random phase per pulse.
+    assert np.abs(phase - phase[:, :1]).max() < 1e-3
+    assert np.std(np.angle(phase[:, 0])) == pytest.approx(0.5, rel=0.3)
 
 
 def test_a_port_in_use_is_named(capsys):

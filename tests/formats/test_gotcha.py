@@ -4,7 +4,8 @@ from scipy.io import loadmat, savemat
 from scipy.ndimage import maximum_filter
 
 from core.formats.gotcha import read_gotcha
-from core.radar.backprojection import backproject, backprojected_frame
+from core.radar.backprojection import backproject
+from core.radar.imaging import ImagingSettings, interval_frame, whole_interval
 from core.radar.phase_history import PhaseHistory
 from core.radar.waveform import SPEED_OF_LIGHT_M_PER_S
 
@@ -118,8 +119,8 @@ def measured_paths(request):
 def measured(measured_paths):
     """The measured history and its picture, 102 m wide."""
     history = read_gotcha(measured_paths)
-    frame = backprojected_frame(history, shape=(512, 512), row_spacing_m=0.2, column_spacing_m=0.2)
-    return history, frame
+    settings = ImagingSettings(method="backprojection", shape=(512, 512), pixel_spacing_m=0.2)
+    return history, interval_frame(history, whole_interval(history), settings)
 
 
 def test_the_measured_scene_is_in_focus(measured):

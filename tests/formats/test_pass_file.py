@@ -22,6 +22,7 @@ def recorded(seed=0, *, pulses=12, frames=2, with_range=True):
     )
     if with_range:
         object.__setattr__(track, "range_m", random.uniform(1e5, 2e5, pulses))
+        object.__setattr__(track, "bisector_scale", random.uniform(0.5, 1, pulses))
         object.__setattr__(track, "epoch_utc", "2016-03-11T17:12:17Z")
     samples = random.normal(size=(pulses, 8)) + 1j * random.normal(size=(pulses, 8))
     return RecordedPass(
@@ -43,6 +44,7 @@ def frame(random, number):
         column_spacing_m=0.05,
         row_resolution_m=0.2,
         label=f"frame {number}",
+        window=("hamming", "taylor -40 dB nbar 6")[number % 2],
     )
 
 
@@ -56,7 +58,13 @@ def test_reading_what_was_written_gives_the_same(tmp_path, seed, frames, with_ra
     assert np.array_equal(after.history.samples, before.history.samples)
     assert np.array_equal(after.history.frequency_hz, before.history.frequency_hz)
     assert after.history.sensor == "R1"
-    for name in ("time_s", "line_of_sight", "line_of_sight_rate_per_s", "range_m"):
+    for name in (
+        "time_s",
+        "line_of_sight",
+        "line_of_sight_rate_per_s",
+        "range_m",
+        "bisector_scale",
+    ):
         assert np.array_equal(
             getattr(after.history.track, name), getattr(before.history.track, name)
         )
@@ -64,7 +72,7 @@ def test_reading_what_was_written_gives_the_same(tmp_path, seed, frames, with_ra
     for ours, theirs in zip(after.frames, before.frames, strict=True):
         assert np.array_equal(ours.amplitude, theirs.amplitude)
         assert np.array_equal(ours.projection.matrix, theirs.projection.matrix)
-        for name in ("time_s", "sensor", "label", "row_spacing_m", "column_resolution_m"):
+        for name in ("time_s", "sensor", "label", "window", "row_spacing_m", "column_resolution_m"):
             assert getattr(ours, name) == getattr(theirs, name)
 
 

@@ -8,7 +8,7 @@ from core.benchmarks.workload import degenerate_task, satellite_task
 from core.geometry.grid import VoxelGrid
 from core.hull.hull_only import Cancelled, carved_surface
 from core.hull.surface import hull_surface
-from core.hull.votes import VoteVolume
+from core.hull.volume import VoteVolume
 from core.silhouettes.silhouette import Silhouette
 from tests.hull.test_mesher import GRID, box_view
 

@@ -5,10 +5,11 @@ import trimesh
 from core.geometry.grid import VoxelGrid
 from core.geometry.projection import Projection
 from core.hull.blame import removed_alone_m3
+from core.hull.mesher import SurfaceMesher
 from core.hull.reprojection import reprojected_mask
 from core.hull.surface import hull_surface
 from core.hull.view import View
-from core.hull.votes import VoteVolume
+from core.hull.volume import VoteVolume
 from core.silhouettes.silhouette import Silhouette
 
 GRID = VoxelGrid.cube(side_m=8.0, spacing_m=0.25)
@@ -92,3 +93,28 @@ def test_more_than_255_views_vote_exactly():
     volume.add_many([box_view(0)] * 300)
     assert volume.votes.max() == 300
     assert volume.votes.dtype == np.uint16
+
+
+def plate_view(end_m):
+    """The outline of a plate 2.82 m wide seen along z, from x = −3.4 m to `end_m`.
+
+    Vertices at x = 2.4 m keep what changes at its end away from the rest.
+    """
+    x, y = np.array([-3.4, -3.4, 2.4, end_m, end_m, 2.4]), 1.41 * np.array([-1, 1, 1, 1, -1, -1])
+    ring = 40 + 10 * np.column_stack([x, y])
+    silhouette = Silhouette(rings=(ring,), image_shape=(80, 80), claim="complete")
+    return View(silhouette=silhouette, projection=box_view(2).projection)
+
+
+def test_an_edit_without_effect_is_remembered_when_it_gets_one():
+    """View 2 ends earlier, but behind view 1's edge; then view 1 gives way and view 2 bounds."""
+    volume = VoteVolume(GRID)
+    numbers = volume.add_many([box_view(0), box_view(1), plate_view(3.4)])
+    mesher = SurfaceMesher(volume)
+    before = mesher.surface()
+    volume.replace(numbers[2], plate_view(2.8))
+    assert np.array_equal(mesher.surface().vertices_m, before.vertices_m)
+    volume.replace(numbers[1], box_view(1, [3.6, 1.41, 0.77]))
+    surface = mesher.surface()
+    assert surface.vertices_m[:, 0].max() == pytest.approx(2.8, abs=1e-6)
+    assert np.array_equal(surface.vertices_m, hull_surface(volume).vertices_m)

@@ -3,7 +3,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.hull.plane_votes import PlaneVoter, Window
-from core.hull.votes import Voter, VoteVolume
+from core.hull.volume import VoteVolume
+from core.hull.votes import Voter
 from tests.hull.test_votes import GRID, random_view
 from tests.laws.cameras import camera_like
 

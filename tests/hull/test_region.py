@@ -5,7 +5,8 @@ from hypothesis import strategies as st
 
 from core.geometry.projection import Projection
 from core.hull.region import reach_on_planes, regions_of_interest
-from core.hull.votes import Voter, VoteVolume
+from core.hull.volume import VoteVolume
+from core.hull.votes import Voter
 from core.silhouettes.silhouette import Silhouette
 from tests.hull.test_mesher import GRID as BOX_GRID
 from tests.hull.test_mesher import HALF_M, box_view

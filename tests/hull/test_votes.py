@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from core.geometry.grid import VoxelGrid
 from core.geometry.projection import Projection, range_doppler_projection
 from core.hull.view import View
-from core.hull.votes import VoteVolume
+from core.hull.volume import VoteVolume
 from core.silhouettes.silhouette import Silhouette, clockwise_area_px
 
 GRID = VoxelGrid.cube(side_m=12.0, spacing_m=0.5)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from core.geometry.grid import VoxelGrid
 from core.hull.mesher import SurfaceMesher
 from core.hull.view import View
-from core.hull.votes import VoteVolume
+from core.hull.volume import VoteVolume
 from core.silhouettes.silhouette import Silhouette
 from tests.hull.test_votes import random_view
 

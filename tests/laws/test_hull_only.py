@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from core.geometry.grid import VoxelGrid
 from core.hull.hull_only import carved_surface
 from core.hull.surface import hull_surface
-from core.hull.votes import VoteVolume
+from core.hull.volume import VoteVolume
 from tests.hull.test_votes import random_view
 from tests.laws.cameras import camera_like
 from tests.laws.outlines import LATTICE, lattice_views

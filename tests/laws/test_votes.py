@@ -6,7 +6,7 @@ from core.geometry.grid import VoxelGrid
 from core.geometry.projection import Projection
 from core.hull.polygon_test import votes_of
 from core.hull.view import View
-from core.hull.votes import VoteVolume
+from core.hull.volume import VoteVolume
 from tests.laws.outlines import LATTICE, lattice_views, silhouette
 
 

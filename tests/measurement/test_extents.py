@@ -5,7 +5,7 @@ from core.geometry.grid import VoxelGrid
 from core.geometry.projection import range_doppler_projection
 from core.hull.surface import hull_surface, mask_surface
 from core.hull.view import View
-from core.hull.votes import VoteVolume
+from core.hull.volume import VoteVolume
 from core.measurement.extents import axis_extents, unobserved_direction
 from core.silhouettes.silhouette import Silhouette, clockwise_area_px
 

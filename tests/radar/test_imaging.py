@@ -1,13 +1,17 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from core.experiments.physics.point_spread import respond
 from core.geometry.track import random_views_track, track_from_angles
 from core.radar.echoes import point_echoes
-from core.radar.imaging import ImagingSettings, frame_count, frames, hamming
+from core.radar.imaging import ImagingSettings, frame_count, frames, whole_interval
 from core.radar.phase_history import PhaseHistory
 from core.radar.waveform import SPEED_OF_LIGHT_M_PER_S, Waveform
+from core.radar.window import HAMMING, taylor
 
 WAVEFORM = Waveform()
 SETTINGS = ImagingSettings()
@@ -92,7 +96,9 @@ def test_the_image_equals_the_direct_sum():
     axes = frame.projection.matrix[:, :3] * 0.15
     wavenumber = 4 * np.pi / SPEED_OF_LIGHT_M_PER_S * history.frequency_hz
     in_plane = track.line_of_sight @ axes.T
-    weights = hamming(np.linspace(0, 1, 40))[:, None] * hamming(np.linspace(0, 1, 256))
+    weights = np.multiply.outer(
+        *(HAMMING.weights((np.arange(count) + 0.5) / count) for count in (40, 256))
+    )
     place = (np.arange(32) - 16) * 0.15
     vectors = in_plane[:, :, None] * wavenumber
     rows = np.exp(1j * np.multiply.outer(place, vectors[:, 0]))
@@ -110,6 +116,90 @@ def test_an_asymmetric_target_is_not_mirrored_from_any_side():
             row, column = np.round(frame.projection.image_points(corner)).astype(int)
             near = frame.amplitude[row - 1 : row + 2, column - 1 : column + 2]
             assert near.max() == pytest.approx(strength, rel=0.25)
+
+
+@pytest.mark.parametrize("window", [HAMMING, taylor(sidelobe_db=-38.0, nbar=6)])
+@pytest.mark.parametrize("method", ["polar", "keystone"])
+@pytest.mark.parametrize("offset_m", [(0.0, 0.0), (10.0, 0.0), (0.0, -10.0), (-7.0, 7.0)])
+def test_the_response_is_the_windows_on_and_off_the_axis(method, offset_m, window):
+    history = one_view(11, np.zeros((1, 3)))
+    seen = respond(
+        history, whole_interval(history), offset_m, method=method, window=window, pixel_m=0.02
+    )
+    assert seen.error_cells < 0.05
+    assert seen.width_error < 0.05
+    assert seen.sidelobe_db == pytest.approx(window.highest_sidelobe_db, abs=1.0)
+    assert seen.peak == pytest.approx(1, abs=0.02)
+
+
+def test_plain_range_doppler_smears_off_the_axis_and_only_there():
+    history = one_view(11, np.zeros((1, 3)))
+    on, off = (
+        respond(history, whole_interval(history), place, method="range-doppler", pixel_m=0.02)
+        for place in ((0.0, 0.0), (0.0, 10.0))
+    )
+    assert on.width_error < 0.05
+    assert off.width_error > 0.3
+    assert off.peak < 0.8
+
+
+@pytest.mark.parametrize("columns", [63, 64, 65])
+@pytest.mark.parametrize("column_m", [0.05, 0.15, 0.4])
+def test_keystone_puts_the_origin_in_the_middle_at_any_spacing(columns, column_m):
+    history = one_view(2, [[0, 0, 0]])
+    coarse = ImagingSettings(method="keystone", shape=(64, columns), column_spacing_m=column_m)
+    (frame,) = frames(history, coarse)
+    peak = np.unravel_index(np.argmax(frame.amplitude), frame.shape)
+    assert peak == (32, columns // 2)
+    assert frame.amplitude.max() == pytest.approx(1, abs=1e-3)
+    assert frame.projection.image_points(np.zeros(3)) == pytest.approx(peak)
+
+
+def test_a_turn_that_grows_faster_still_gives_the_windows_response():
+    """Pulses crowd where the line of sight turns slowly; each is weighed by its turn."""
+    place = np.linspace(-1, 1, 300)
+    angle = WAVEFORM.wavelength_m / 0.6 * (place + 0.3 * place**2)
+    track = track_from_angles(np.arange(300), np.zeros(300), angle)
+    history = PhaseHistory(
+        samples=np.ones((300, 256)), frequency_hz=WAVEFORM.frequencies_hz(), track=track
+    )
+    seen = respond(history, whole_interval(history), (0.0, 3.0), method="polar", pixel_m=0.02)
+    assert seen.width_error < 0.02
+    assert seen.sidelobe_db == pytest.approx(HAMMING.highest_sidelobe_db, abs=0.5)
+
+
+def test_unevenly_timed_pulses_are_no_plain_range_doppler():
+    history = one_view(1, [[0, 0, 0]])
+    time = np.array(history.track.time_s)
+    time[100] += 0.004
+    uneven = replace(history, track=replace(history.track, time_s=time))
+    with pytest.raises(ValueError, match=r"up to 0\.4 pulse intervals early or late; use polar"):
+        list(frames(uneven, replace(SETTINGS, method="range-doppler")))
+
+
+@pytest.mark.parametrize(
+    ("waveform", "pulses", "axis"),
+    [(Waveform(bandwidth_hz=2e9), 256, "range"), (WAVEFORM, 128, "Doppler")],
+)
+def test_a_target_larger_than_what_is_unambiguous_is_refused(waveform, pulses, axis):
+    history = one_view(1, [[0, 0, 0]], pulses=pulses)
+    history = replace(history, frequency_hz=waveform.frequencies_hz())
+    asked = replace(SETTINGS, target_radius_m=10.0, shape=(32, 32))
+    with pytest.raises(ValueError, match=f"spans 20 m, but the echoes are unambiguous in {axis}"):
+        frame_count(history, asked)
+
+
+def test_unmatched_shapes_are_refused():
+    history = one_view(1, [[0, 0, 0]])
+    with pytest.raises(ValueError, match=r"shape 256 × 256, got \(255, 256\)"):
+        replace(history, samples=history.samples[1:])
+
+
+@pytest.mark.parametrize("name", ["pixel_spacing_m", "row_spacing_m", "column_spacing_m"])
+@pytest.mark.parametrize("value", [0.0, -1.0, np.nan])
+def test_a_senseless_spacing_is_refused(name, value):
+    with pytest.raises(ValueError, match="spacing must be positive metres"):
+        ImagingSettings(**{name: value})
 
 
 def test_frames_are_counted_before_they_are_made():

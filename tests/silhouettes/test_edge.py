@@ -3,14 +3,14 @@ import pytest
 
 from core.frame import Frame
 from core.geometry.projection import range_doppler_projection
-from core.radar.window import HALF_POWER_WIDTH_CELLS, point_response
+from core.radar.window import HAMMING, taylor
 from core.silhouettes.edge import edge_spread
 from core.silhouettes.extraction import ExtractionSettings, extract_silhouette
 
 PIXEL_M, CELL_M = 0.06, 0.15
 
 
-def speckled_square(noise_db, seed, side_m=9.0):
+def speckled_square(noise_db, seed, side_m=9.0, window=HAMMING):
     """A square of independent diffuse scatterers through the imaging window, in receiver noise."""
     random = np.random.default_rng(seed)
     size = 512
@@ -20,7 +20,7 @@ def speckled_square(noise_db, seed, side_m=9.0):
     shape = (2 * half, 2 * half)
     scene[inside, inside] = random.normal(size=shape) + 1j * random.normal(size=shape)
     place = (np.arange(size) - size // 2) * PIXEL_M / CELL_M
-    response = np.fft.fft(np.fft.ifftshift(point_response(place)))
+    response = np.fft.fft(np.fft.ifftshift(window.point_response(place)))
     image = np.fft.ifft2(np.fft.fft2(scene) * np.outer(response, response))
     level = np.sqrt(np.mean(np.abs(image[inside, inside]) ** 2))
     # The noise passes the same window as the echoes.
@@ -41,8 +41,9 @@ def speckled_square(noise_db, seed, side_m=9.0):
         line_of_sight=[1.0, 0, 0],
         row_spacing_m=PIXEL_M,
         column_spacing_m=PIXEL_M,
-        row_resolution_m=HALF_POWER_WIDTH_CELLS * CELL_M,
-        column_resolution_m=HALF_POWER_WIDTH_CELLS * CELL_M,
+        row_resolution_m=window.half_power_width_cells * CELL_M,
+        column_resolution_m=window.half_power_width_cells * CELL_M,
+        window=window.name,
     )
 
 
@@ -51,16 +52,19 @@ def mean_side_m(frame, *, corrects_edge):
     return np.sqrt(silhouette.area_px()) * PIXEL_M
 
 
+@pytest.mark.parametrize("window", [HAMMING, taylor(sidelobe_db=-38.0, nbar=6)])
 @pytest.mark.parametrize("noise_db", [-20.0, -25.0, -30.0, -35.0])
-def test_the_corrected_edge_is_the_true_one_whatever_the_noise(noise_db):
-    frame = speckled_square(noise_db, seed=5)
+def test_the_corrected_edge_is_the_true_one_whatever_the_noise_and_window(noise_db, window):
+    frame = speckled_square(noise_db, seed=5, window=window)
     raw, corrected = (mean_side_m(frame, corrects_edge=choice) for choice in (False, True))
     assert raw > 9.15
     assert corrected == pytest.approx(9.0, abs=0.1)
 
 
-def test_half_the_power_is_left_at_a_straight_edge():
-    distance, spread = edge_spread()
+@pytest.mark.parametrize("window", [HAMMING, taylor()])
+def test_half_the_power_is_left_at_a_straight_edge(window):
+    distance, spread = edge_spread(window)
+    assert distance[-1] == pytest.approx(window.first_null_cells, abs=1e-3)
     assert distance[0] == pytest.approx(0, abs=1e-3)
     assert spread[0] == pytest.approx(0.5, abs=1e-3)
     assert np.all(np.diff(spread) <= 0)
