@@ -8,6 +8,7 @@ from core.frame import Frame
 from core.geometry.grid import VoxelGrid
 from core.hull.registration import centroid_registered
 from core.hull.shadow import CarvingRule, carving_view
+from core.hull.sunlight import frame_view
 from core.hull.surface import EMPTY_SURFACE, Surface, hull_surface, mask_surface
 from core.hull.view import View
 from core.hull.votes import VoteVolume
@@ -102,8 +103,7 @@ def reconstruct(
         if not silhouette.is_empty:
             if settings.registers_centroids:
                 frame = _registered(received, silhouette)
-            view = View(silhouette=silhouette, projection=frame.projection)
-            views.append(carving_view(view, settings.rule))
+            views.append(carving_view(frame_view(frame, silhouette), settings.rule))
             volume.add(views[-1])
         yield _step(
             number=number,

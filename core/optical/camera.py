@@ -140,3 +140,18 @@ def _check(rotation: Floats, **lengths_m: float) -> None:
     for name, length_m in lengths_m.items():
         if not (np.isfinite(length_m) and length_m > 0):
             raise ValueError(f"A camera's {name} must be positive metres, got {length_m}.")
+
+
+def pixel_size_m(projection: Projection) -> float:
+    """Return the size of a pixel at the target frame's origin, as the root of its area.
+
+    Raises:
+        ValueError: a camera with the origin behind it.
+    """
+    matrix = projection.matrix
+    if not projection.is_affine:
+        if not matrix[2, 3] > 0:
+            raise ValueError("The target frame's origin lies behind the camera.")
+        at_origin = projection.image_points(np.zeros(3))
+        matrix = (matrix[:2] - at_origin[:, None] * matrix[2]) / matrix[2, 3]
+    return float(1 / np.sqrt(np.linalg.norm(np.cross(matrix[0, :3], matrix[1, :3]))))

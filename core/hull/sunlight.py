@@ -1,0 +1,115 @@
+"""The shadow rule in sunlight: what the outline of a sunlit side may carve.
+
+A telescope sees of the target what the sun lights and nothing else. Take any point of the target
+that lies in a dark pixel. The ray from it to the sun leaves the target at a sunlit point, whose
+pixel lies further toward the sun in the picture. If something hides that point, then what hides it
+is either lit, or dark, and then the same holds of it; each step leads on toward the sun, and
+so to a bright pixel in the end. A dark pixel may therefore carve only if there is no bright one
+between it and the sun. That is the radar's rule with the sun in the radar's place: turned so that
+its rows grow away from the sun, the picture obeys `core.hull.shadow` as it stands.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from core.arrays import Floats
+from core.frame import Frame
+from core.geometry.projection import Projection
+from core.hull.view import View
+from core.optical.sun import phase_angle_rad
+from core.silhouettes.silhouette import Silhouette
+
+ALIGNED_RAD = 1e-4
+"""With the sun this close behind the observer no shade is seen, and the outline is complete."""
+
+
+def frame_view(frame: Frame, silhouette: Silhouette) -> View:
+    """Return the view of a frame's silhouette, ready for `carving_view`.
+
+    An outline of the sunlit side is turned, with its projection, so that rows grow away from the
+    sun. All others are left as they are.
+
+    Raises:
+        ValueError: a picture against the sun, in which nothing seen can be lit, or the sun within
+            a perspective picture.
+    """
+    plain = View(silhouette=silhouette, projection=frame.projection)
+    if frame.sun_direction is None or silhouette.claim == "complete" or silhouette.is_empty:
+        return plain
+    phase = float(phase_angle_rad(frame.line_of_sight, frame.sun_direction))
+    if phase < ALIGNED_RAD:
+        return View(silhouette=replace(silhouette, claim="complete"), projection=frame.projection)
+    if phase > np.pi - ALIGNED_RAD:
+        raise ValueError(
+            f'"{frame.label}" looks straight into the sun, where no side that is seen is lit.'
+        )
+    return _turned(plain, frame.sun_direction)
+
+
+def lit_disc_fraction(phase_rad: float) -> float:
+    """Return the share of a sphere's disc that is sunlit, which bounds what an outline can show.
+
+    At a phase angle of 60° a quarter of the disc is dark, at 90° half of it.
+
+    Source: Meeus, "Astronomical algorithms", 1998, eq. 48.1.
+    """
+    return float(1 + np.cos(phase_rad)) / 2
+
+
+def _turned(view: View, sun_direction: Floats) -> View:
+    homography = _away_from_the_sun(view.projection, sun_direction)
+    corners = np.array([(r, c) for r in (0, 1) for c in (0, 1)]) * (
+        np.array(view.silhouette.image_shape) - 1
+    )
+    mapped = _mapped(homography, corners.astype(np.float64))
+    least, most = mapped.min(axis=0), mapped.max(axis=0)
+    shift = np.eye(3)
+    shift[:2, 2] = -np.floor(least)
+    homography = shift @ homography
+    rows, columns = (np.ceil(most) - np.floor(least) + 1).astype(int)
+    silhouette = replace(
+        view.silhouette,
+        rings=tuple(_mapped(homography, ring) for ring in view.silhouette.rings),
+        image_shape=(int(rows), int(columns)),
+    )
+    return View(silhouette=silhouette, projection=_composed(homography, view.projection))
+
+
+def _away_from_the_sun(projection: Projection, sun_direction: Floats) -> Floats:
+    """Return the (3, 3) map of homogeneous pixels that sends the sun to row −∞ of every column.
+
+    A turn about the origin's pixel, and in perspective the slight tilt that makes lines toward
+    the sun parallel.
+    """
+    centre = projection.image_points(np.zeros(3))
+    vanishing = projection.matrix[:, :3] @ sun_direction
+    depth = 0.0 if projection.is_affine else float(vanishing[2])
+    toward = vanishing[:2] - depth * centre
+    distance = float(np.linalg.norm(toward))
+    away = -toward / distance
+    turn = np.eye(3)
+    turn[:2, :2] = [[away[0], away[1]], [-away[1], away[0]]]
+    turn[:2, 2] = -turn[:2, :2] @ centre
+    tilt = np.eye(3)
+    tilt[2, 0] = depth / distance
+    homography: Floats = tilt @ turn
+    return homography
+
+
+def _mapped(homography: Floats, points: Floats) -> Floats:
+    image = points @ homography[:, :2].T + homography[:, 2]
+    if float(image[:, 2].min()) <= 0:
+        raise ValueError(
+            "The sun's direction points into this perspective picture, so that shadows run from a "
+            "point within it; such a frame cannot carve by its lit side."
+        )
+    mapped: Floats = image[:, :2] / image[:, 2:]
+    return mapped
+
+
+def _composed(homography: Floats, projection: Projection) -> Projection:
+    if not projection.is_affine:
+        return Projection(matrix=homography @ projection.matrix)
+    affine = np.vstack([projection.matrix, [0.0, 0, 0, 1]])
+    return Projection(matrix=(homography @ affine)[:2])
