@@ -8,7 +8,7 @@ from core.frame import Frame
 from core.geometry.grid import VoxelGrid
 from core.hull.registration import centroid_registered
 from core.hull.shadow import CarvingRule, carving_view
-from core.hull.sunlight import frame_view
+from core.hull.sunlight import MOST_PHASE_RAD, frame_view, unfit_to_carve
 from core.hull.surface import EMPTY_SURFACE, Surface, hull_surface, mask_surface
 from core.hull.view import View
 from core.hull.votes import VoteVolume
@@ -36,6 +36,8 @@ class ReconstructionSettings:
         exact_surface: whether the surface is snapped onto the outlines between the voxels, or
             stands halfway between voxels, which needs no kernels compiled at the first start.
         extraction: how silhouettes are taken from frames.
+        most_phase_rad: sunlit outlines vote up to this angle at the target between the sun and
+            the observer; π lets all vote.
     """
 
     spacing_m: float = 0.15
@@ -45,6 +47,7 @@ class ReconstructionSettings:
     registers_centroids: bool = False
     exact_surface: bool = True
     extraction: ExtractionSettings = field(default_factory=ExtractionSettings)
+    most_phase_rad: float = MOST_PHASE_RAD
 
     def __post_init__(self) -> None:
         if self.tolerated_misses < 0:
@@ -88,8 +91,8 @@ def reconstruct(
 ) -> Iterator[Step]:
     """Carve a hull frame by frame and yield the state after each.
 
-    A frame in which no target is detected says nothing of where the target is; it is noted and
-    does not vote.
+    A frame in which no target is detected says nothing of where the target is, and one against
+    the sun too little; they are noted and do not vote.
 
     Raises:
         ValueError: a frame without contrast, or a grid too large.
@@ -100,7 +103,8 @@ def reconstruct(
     for number, received in enumerate(frames, start=1):
         silhouette = extract_silhouette(received, settings.extraction)
         frame = received
-        if not silhouette.is_empty:
+        unfit = unfit_to_carve(received, silhouette, settings.most_phase_rad)
+        if not unfit:
             if settings.registers_centroids:
                 frame = _registered(received, silhouette)
             views.append(carving_view(frame_view(frame, silhouette), settings.rule))
@@ -109,6 +113,7 @@ def reconstruct(
             number=number,
             frame=frame,
             silhouette=silhouette,
+            note=f"frame {number} {unfit} and does not vote" if unfit else "",
             volume=volume,
             views=views,
             settings=settings,
@@ -120,6 +125,7 @@ def _step(
     number: int,
     frame: Frame,
     silhouette: Silhouette,
+    note: str,
     volume: VoteVolume,
     views: Sequence[View],
     settings: ReconstructionSettings,
@@ -128,13 +134,12 @@ def _step(
     surface = _surface(volume, threshold, settings) if views else EMPTY_SURFACE
     extents = () if surface.is_empty else axis_extents(surface, volume.grid, views)
     is_closed = bool(extents) and all(extent.is_bounded for extent in extents)
-    missing = f"frame {number} shows no target and does not vote" if silhouette.is_empty else ""
     return Step(
         number=number,
         voting=len(views),
         frame=frame,
         silhouette=silhouette,
-        note=missing,
+        note=note,
         surface=surface,
         threshold=threshold,
         extents=extents,

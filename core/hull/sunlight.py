@@ -3,10 +3,15 @@
 A telescope sees of the target what the sun lights and nothing else. Take any point of the target
 that lies in a dark pixel. The ray from it to the sun leaves the target at a sunlit point, whose
 pixel lies further toward the sun in the picture. If something hides that point, then what hides it
-is either lit, or dark, and then the same holds of it; each step leads on toward the sun, and
-so to a bright pixel in the end. A dark pixel may therefore carve only if there is no bright one
-between it and the sun. That is the radar's rule with the sun in the radar's place: turned so that
-its rows grow away from the sun, the picture obeys `core.hull.shadow` as it stands.
+is either lit, or dark, and then the same holds of it; each step leads on toward the sun, and so to
+a lit pixel or to the outline. A dark pixel may therefore carve only if there is no lit one between
+it and the sun. That is the radar's rule with the sun in the radar's place: turned so that its rows
+grow away from the sun, the picture obeys `core.hull.shadow` as it stands.
+
+The rule is sound for smooth bodies. Where a body has an edge toward the sun whose lit face is
+turned from the observer, or lit at so grazing an angle that it does not show, the outline on that
+side is lost. The smaller the phase angle the rarer that is; hence `MOST_PHASE_RAD`, and a vote
+threshold that tolerates a miss or two.
 """
 
 from dataclasses import replace
@@ -22,6 +27,11 @@ from core.silhouettes.silhouette import Silhouette
 
 ALIGNED_RAD = 1e-4
 """With the sun this close behind the observer no shade is seen, and the outline is complete."""
+
+MOST_PHASE_RAD = float(np.deg2rad(60.0))
+"""Up to this phase angle a sunlit outline carves. Of a laboratory with dark flat panels, seen from
+14 random directions at each angle, the rule lost at most 2 % of the target's picture at 60°, the
+outline as it stands up to 68 %."""
 
 
 def frame_view(frame: Frame, silhouette: Silhouette) -> View:
@@ -45,6 +55,29 @@ def frame_view(frame: Frame, silhouette: Silhouette) -> View:
             f'"{frame.label}" looks straight into the sun, where no side that is seen is lit.'
         )
     return _turned(plain, frame.sun_direction)
+
+
+def unfit_to_carve(
+    frame: Frame, silhouette: Silhouette, most_phase_rad: float = MOST_PHASE_RAD
+) -> str:
+    """Return why a silhouette must not carve, in a clause for people to read; empty if it may.
+
+    Args:
+        frame: where it was drawn in.
+        silhouette: one drawn whole, which claims to be complete, always may.
+        most_phase_rad: largest phase angle at which the sunlit side tells enough.
+    """
+    if silhouette.is_empty:
+        return "shows no target"
+    if frame.sun_direction is None or silhouette.claim == "complete":
+        return ""
+    phase = float(phase_angle_rad(frame.line_of_sight, frame.sun_direction))
+    if phase <= most_phase_rad:
+        return ""
+    return (
+        f"has the sun {np.rad2deg(phase):.0f}° from behind the observer, so that only "
+        f"{100 * lit_disc_fraction(phase):.0f} % of a sphere would be lit"
+    )
 
 
 def lit_disc_fraction(phase_rad: float) -> float:

@@ -11,7 +11,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
-from scipy.ndimage import binary_dilation, binary_erosion, gaussian_filter
+from scipy.ndimage import (
+    binary_dilation,
+    binary_erosion,
+    distance_transform_cdt,
+    gaussian_filter,
+    maximum_filter,
+)
 
 from core.arrays import Floats
 from core.frame import Frame
@@ -24,8 +30,17 @@ from core.silhouettes.silhouette import Silhouette
 NEIGHBOURHOOD_PX = 2.0
 """Standard deviation of the neighbourhood whose brightness counts as inside."""
 
+DEEP_PX = 4
+"""Pixels this deep inside are free of the edge's blur."""
+
 BAND_PX = 2
 """How far from GrabCut's edge, which runs between pixels, the true one is looked for."""
+
+SIMPLIFICATION_PX = 0.1
+"""Rings lose the vertices that move them by less, a third of the edge's error."""
+
+WINGS_SHARE, WINGS_PX = 0.03, 10
+"""Within so many pixels of a bright part, what is darker than this share of it may be its wings."""
 
 _SIGMA_OF_MEDIAN = 1.4826
 """Standard deviation of a normal distribution over its median absolute deviation."""
@@ -53,10 +68,11 @@ class TelescopeSettings:
 def telescope_silhouette(frame: Frame, settings: TelescopeSettings | None = None) -> Silhouette:
     """Return the outline of what a telescope frame shows, empty where that is nothing.
 
-    Otsu's threshold on the stretched brightness starts GrabCut, as for photographs; its split is
-    cleaned, and its edge moved to where the brightness is half of that just inside, which is
-    where a symmetric point spread leaves a step. It claims the lit side only where the frame
-    says where the sun is, and to be complete otherwise.
+    Otsu's threshold on the stretched brightness starts GrabCut, as for photographs; dim parts
+    that stand clear of the bright ones' wings are added, the whole is cleaned, and its edge moved
+    to where the brightness is half of that just inside, which is where a symmetric point spread
+    leaves a step. It claims the lit side only where the frame says where the sun is, and to be
+    complete otherwise.
 
     Raises:
         ValueError: a frame of one brightness throughout.
@@ -66,7 +82,10 @@ def telescope_silhouette(frame: Frame, settings: TelescopeSettings | None = None
     settings = settings or TelescopeSettings()
     signal, sigma = _above_the_sky(frame, settings)
     mask = _mask(frame, signal, sigma, settings)
-    rings = traced_rings(_level(signal, mask, sigma), 0.0) if mask.any() else ()
+    rings: tuple[Floats, ...] = ()
+    if mask.any():
+        level = _level(signal, mask, sigma)
+        rings = traced_rings(level, 0.0, simplification_px=SIMPLIFICATION_PX)
     return Silhouette(
         rings=rings,
         image_shape=frame.shape,
@@ -136,19 +155,26 @@ def _mask(
     photograph = Photograph(
         frame=replace(frame, amplitude=stretched), colours=np.repeat(grey[..., None], 3, axis=2)
     )
-    split = object_mask(photograph, PhotographSettings(gamma=1.0)) & seen
-    return cleaned_mask(split, closing_px=0, smallest_part_px=settings.smallest_part_px)
+    try:
+        split = object_mask(photograph, PhotographSettings(gamma=1.0))
+    except ValueError:  # nothing is three pixels wide, such as a body edge-on; what is seen stays
+        split = seen
+    # GrabCut gives a panel at grazing light to the sky; what is seen and no wing is target too.
+    clear = signal > WINGS_SHARE * maximum_filter(signal, 2 * WINGS_PX + 1)
+    return cleaned_mask(
+        seen & (split | clear), closing_px=0, smallest_part_px=settings.smallest_part_px
+    )
 
 
 def _level(signal: Floats, mask: NDArray[np.bool_], sigma: float) -> NDArray[np.float32]:
     """Return a level (rows, columns) whose zero is the outline: brightness over half of inside.
 
-    Inside is the mean of the mask's pixels near by, each weighted by its own brightness, so that
-    the dim edge hardly counts.
+    Inside is the mean of the mask's pixels near by, each weighted by the fourth power of its
+    depth, so that the dim edge counts only where a part is so thin that it is all there is.
     """
-    inner = np.where(mask, np.maximum(signal, 0.0), 0.0)
-    total = gaussian_filter(inner, NEIGHBOURHOOD_PX)
-    inside = gaussian_filter(inner * inner, NEIGHBOURHOOD_PX) / np.maximum(total, 1e-3 * sigma)
+    weight = np.minimum(distance_transform_cdt(mask, metric="chessboard"), DEEP_PX) ** 4.0
+    total = gaussian_filter(weight, NEIGHBOURHOOD_PX)
+    inside = gaussian_filter(weight * signal, NEIGHBOURHOOD_PX) / np.maximum(total, 1e-9)
     level = np.clip(signal / np.maximum(inside, sigma) - 0.5, -0.5, 0.5)
     core = binary_erosion(mask, iterations=BAND_PX, border_value=1)
     near = binary_dilation(mask, iterations=BAND_PX)
