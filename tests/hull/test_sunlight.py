@@ -102,7 +102,7 @@ def test_rows_grow_away_from_the_sun(seed, phase, range_m):
     assert np.all(after[:, 0] < before[:, 0])
 
 
-@settings(max_examples=5)
+@settings(max_examples=3)
 @given(seed=seeds, phase=phases, range_m=ranges)
 def test_turning_moves_the_outline_with_the_target(seed, phase, range_m):
     """The turned outline is to the turned projection what the first was to the first."""
