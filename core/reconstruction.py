@@ -7,8 +7,8 @@ from core.arrays import Floats
 from core.frame import Frame
 from core.geometry.grid import VoxelGrid
 from core.hull.registration import centroid_registered
-from core.hull.shadow import CarvingRule, carving_view
-from core.hull.sunlight import MOST_PHASE_RAD, frame_view, unfit_to_carve
+from core.hull.shadow import CarvingRule
+from core.hull.sunlight import MOST_PHASE_RAD, carving_frame_view, unfit_to_carve
 from core.hull.surface import EMPTY_SURFACE, Surface, hull_surface, mask_surface
 from core.hull.view import View
 from core.hull.votes import VoteVolume
@@ -27,7 +27,8 @@ class ReconstructionSettings:
 
     Attributes:
         spacing_m: voxel spacing.
-        side_m: side of the cubic grid, centred on the target frame's origin.
+        side_m: side of the cubic grid, centred on the target frame's origin; the target is taken
+            to be no longer in any direction.
         rule: "shadow" carves nothing behind the first return, "strict" is the paper's rule.
         tolerated_misses: a voxel stays while at most this many views miss it, so that the vote
             threshold T of eq. 25 is the number of views less this; 0 is the paper's T = I.
@@ -107,7 +108,9 @@ def reconstruct(
         if not unfit:
             if settings.registers_centroids:
                 frame = _registered(received, silhouette)
-            views.append(carving_view(frame_view(frame, silhouette), settings.rule))
+            views.append(
+                carving_frame_view(frame, silhouette, settings.rule, depth_m=settings.side_m)
+            )
             volume.add(views[-1])
         yield _step(
             number=number,

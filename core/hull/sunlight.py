@@ -8,6 +8,11 @@ a lit pixel or to the outline. A dark pixel may therefore carve only if there is
 it and the sun. That is the radar's rule with the sun in the radar's place: turned so that its rows
 grow away from the sun, the picture obeys `core.hull.shadow` as it stands.
 
+More than that: each of those steps toward the sun by d in the picture leads d / tan α nearer to the
+observer, α being the phase angle, and what hides a point is nearer still. All steps together lead
+no further than the target is deep along the line of sight, so that its unlit parts lie within
+depth × tan α of a lit pixel. The smaller the phase angle the less an outline leaves open.
+
 The rule is sound for smooth bodies. Where a body has an edge toward the sun whose lit face is
 turned from the observer, or lit at so grazing an angle that it does not show, the outline on that
 side is lost. The smaller the phase angle the rarer that is; hence `MOST_PHASE_RAD`, and a vote
@@ -21,17 +26,22 @@ import numpy as np
 from core.arrays import Floats
 from core.frame import Frame
 from core.geometry.projection import Projection
+from core.hull.shadow import CarvingRule, carving_view, filled_as_far_as
 from core.hull.view import View
+from core.optical.camera import pixel_size_m
 from core.optical.sun import phase_angle_rad
 from core.silhouettes.silhouette import Silhouette
 
 ALIGNED_RAD = 1e-4
 """With the sun this close behind the observer no shade is seen, and the outline is complete."""
 
+FARTHEST_RAD = float(np.deg2rad(85.0))
+"""From this phase angle on shade may reach past the picture, and is taken to."""
+
 MOST_PHASE_RAD = float(np.deg2rad(60.0))
 """Up to this phase angle a sunlit outline carves. Of a laboratory with dark flat panels, seen from
-14 random directions at each angle, the rule lost at most 2 % of the target's picture at 60°, the
-outline as it stands up to 68 %."""
+14 random directions at each of 15°, 30°, 45° and 60°, the rule lost 0.1 to 0.2 % of the picture in
+the median and 6 % at worst; the outline as it stands loses 5 to 26 %, and 68 % at worst."""
 
 
 def frame_view(frame: Frame, silhouette: Silhouette) -> View:
@@ -55,6 +65,32 @@ def frame_view(frame: Frame, silhouette: Silhouette) -> View:
             f'"{frame.label}" looks straight into the sun, where no side that is seen is lit.'
         )
     return _turned(plain, frame.sun_direction)
+
+
+def carving_frame_view(
+    frame: Frame, silhouette: Silhouette, rule: CarvingRule, *, depth_m: float
+) -> View:
+    """Return the view of a frame's silhouette as it votes under `rule`.
+
+    Args:
+        frame: of a radar or a telescope.
+        silhouette: drawn in it.
+        rule: "strict" takes outlines as they stand.
+        depth_m: which no part of the target exceeds along the line of sight.
+
+    Raises:
+        ValueError: as `frame_view`.
+    """
+    view = frame_view(frame, silhouette)
+    if rule == "strict" or frame.sun_direction is None or view.silhouette.claim == "complete":
+        return carving_view(view, rule)
+    phase = float(phase_angle_rad(frame.line_of_sight, frame.sun_direction))
+    if phase > FARTHEST_RAD:
+        return carving_view(view, rule)
+    reach_rows = depth_m * np.tan(phase) / pixel_size_m(view.projection)
+    # A twentieth more, for the change of scale in perspective, and a pixel for the edge.
+    filled = filled_as_far_as(view.silhouette, 1.05 * reach_rows + 1)
+    return replace(view, silhouette=filled)
 
 
 def unfit_to_carve(

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from core.experiments.true_outline import true_silhouette
 from core.frame import Frame
 from core.hull.shadow import carving_view
-from core.hull.sunlight import frame_view, lit_disc_fraction, unfit_to_carve
+from core.hull.sunlight import carving_frame_view, frame_view, lit_disc_fraction, unfit_to_carve
 from core.optical.camera import perpendicular_partner
 from core.optical.materials import Material, facet_materials
 from core.optical.rendering import Light, rendered
@@ -20,6 +20,7 @@ from core.targets import Target
 
 SHAPE = (96, 96)
 PIXEL_M = 0.2
+DEPTH_M = 13.0
 
 
 def dumb_bell():
@@ -83,7 +84,9 @@ def test_the_sunlit_side_never_carves_a_smooth_target(seed, phase, range_m):
     """Law: every image of a target's point lies in the outline, filled away from the sun."""
     frame, silhouette = lit_frame(seed, phase, range_m)
     view = frame_view(frame, silhouette)
-    filled = polygon(carving_view(view, "shadow").silhouette)
+    carves = carving_frame_view(frame, silhouette, "shadow", depth_m=DEPTH_M)
+    filled = polygon(carves.silhouette)
+    assert polygon(carving_view(view, "shadow").silhouette).buffer(1e-6).covers(filled)
     truth = true_silhouette(MESH, view.projection, view.silhouette.image_shape)
     # Facets and pixels leave a rim of about a pixel to grazing light.
     lost = polygon(truth).buffer(-1.5).difference(filled)
@@ -117,7 +120,8 @@ def test_turning_moves_the_outline_with_the_target(seed, phase, range_m):
 
 def test_the_outline_as_it_stands_would_carve_the_target():
     frame, silhouette = lit_frame(3, 1.2)
-    strict = polygon(carving_view(frame_view(frame, silhouette), "strict").silhouette)
+    carves = carving_frame_view(frame, silhouette, "strict", depth_m=DEPTH_M)
+    strict = polygon(carves.silhouette)
     assert strict.area < 0.8 * true_silhouette(MESH, frame.projection, SHAPE).area_px()
 
 
@@ -157,3 +161,14 @@ def test_a_spheres_disc_is_half_lit_at_quadrature():
     assert [lit_disc_fraction(phase) for phase in (0, np.pi / 2, np.pi)] == pytest.approx(
         [1, 0.5, 0]
     )
+
+
+def test_the_nearer_the_sun_stands_behind_the_observer_the_less_is_left_open():
+    areas = []
+    for phase in (0.05, 0.3, 0.8):
+        frame, silhouette = lit_frame(4, phase)
+        carves = carving_frame_view(frame, silhouette, "shadow", depth_m=DEPTH_M)
+        areas.append(carves.silhouette.area_px())
+    truth = true_silhouette(MESH, frame.projection, SHAPE).area_px()
+    assert areas == sorted(areas)
+    assert areas[0] < 1.25 * truth

@@ -249,16 +249,19 @@ def _outline_figures(found: list[Outlined], target: Target) -> tuple[Figure, ...
         Figure(
             name=f"hull of {len(found)} sunlit frames, shadow rule, IoU",
             value=shadow.intersection_over_union,
-            wanted=">= 0.6",
         ),
         Figure(
             name=f"hull of {len(found)} sunlit frames, shadow rule, coverage",
             value=shadow.coverage,
-            wanted=">= 0.9",
+            wanted=">= 0.95",
         ),
         Figure(
             name=f"hull of {len(found)} sunlit frames, as they stand, IoU",
             value=strict.intersection_over_union,
+        ),
+        Figure(
+            name=f"hull of {len(found)} sunlit frames, as they stand, coverage",
+            value=strict.coverage,
         ),
     )
 

@@ -10,8 +10,8 @@ from core.arrays import Floats
 from core.experiments.true_outline import true_silhouette
 from core.frame import Frame
 from core.geometry.grid import VoxelGrid
-from core.hull.shadow import CarvingRule, carving_view
-from core.hull.sunlight import frame_view
+from core.hull.shadow import CarvingRule
+from core.hull.sunlight import carving_frame_view, frame_view
 from core.hull.view import View
 from core.hull.votes import VoteVolume
 from core.measurement.comparison import Agreement, voxel_agreement
@@ -24,6 +24,9 @@ from core.silhouettes.silhouette import Silhouette
 from core.targets import Target
 
 RANGE_M = 450e3
+
+SIDE_M = 21.0
+"""Of the grid, which the target does not exceed in any direction."""
 
 LOST_PX = 5.0
 """Where the outline on the sun's side is this far off, the target's edge was not lit."""
@@ -112,11 +115,11 @@ def agreement(
     found: Sequence[Outlined], target: Target, rule: CarvingRule | None, spacing_m: float
 ) -> Agreement:
     """Return how the hull of frames agrees with the target; of the true outlines for no rule."""
-    grid = VoxelGrid.cube(side_m=21.0, spacing_m=spacing_m)
+    grid = VoxelGrid.cube(side_m=SIDE_M, spacing_m=spacing_m)
     volume = VoteVolume(grid)
     for each in found:
         if rule is None:
             volume.add(View(silhouette=each.truth, projection=each.frame.projection))
         else:
-            volume.add(carving_view(frame_view(each.frame, each.silhouette), rule))
+            volume.add(carving_frame_view(each.frame, each.silhouette, rule, depth_m=SIDE_M))
     return voxel_agreement(volume.hull(), target.voxels(grid))

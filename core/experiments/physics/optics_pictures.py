@@ -54,9 +54,9 @@ def pass_picture(scene: Scene) -> Picture:
         name="optics_pass",
         caption=(
             f"Telescope frames (3.67 m, 0.7 µm) of the laboratory's pass over Beijing from "
-            f"{scene.start_utc:%Y-%m-%d %H:%M:%S} UTC on, 20 m wide, brightness under a square "
-            "root: what is extracted is the sunlit side, which at large phase angles is a sliver "
-            "of the true outline."
+            f"{scene.start_utc:%Y-%m-%d %H:%M:%S} UTC on, 20 m wide, each scaled to its "
+            "brightest, under a square root: what is extracted is the sunlit side, which at large "
+            "phase angles is a sliver of the true outline."
         ),
         draw=draw,
         size_in=(11.0, 7.6),
