@@ -31,7 +31,7 @@ from core.experiments.physics.optics_pictures import (
 from core.experiments.physics.part import Part, Progress
 from core.experiments.results import Figure
 from core.geometry.orbit import Pass, line_of_sight_track, passes, satellite_from_elements
-from core.geometry.track import LineOfSightTrack
+from core.geometry.track import LineOfSightTrack, accumulated_turn_rad
 from core.hull.shadow import CarvingRule
 from core.hull.sunlight import MOST_PHASE_RAD
 from core.optical.simulation import OpticalSettings, simulate_optical_frames
@@ -198,11 +198,12 @@ def _radar_frame(
     """Return the radar frame whose interval holds a moment."""
     middle = int(np.argmin(np.abs(track.time_s - time_s)))
     turn_rad = waveform.wavelength_m / (2 * ImagingSettings().cross_range_resolution_m)
-    rate_per_pulse = track.rotation_rate_rad_per_s()[middle] * (track.time_s[1] - track.time_s[0])
-    half = int(np.ceil(0.505 * turn_rad / rate_per_pulse))
+    turn = accumulated_turn_rad(track.line_of_sight)
+    span_rad = 0.505 * turn_rad * np.array([-1, 1])
+    start, stop = (int(pulse) for pulse in np.searchsorted(turn, turn[middle] + span_rad))
     history = simulate_echoes(
         surface_scatterers(target, count=20_000, random=random),
-        track.part(middle - half, middle + half),
+        track.part(start, stop + 1),
         waveform,
         signal_to_noise_db=20.0,
         random=random,
