@@ -286,6 +286,20 @@ def test_frames_without_a_target_do_not_count_as_views(capsys, one_frame, tmp_pa
     assert "at least 2 views; 1 of 2 frames show a target" in err
 
 
+@pytest.mark.parametrize(
+    ("spacing_m", "said"),
+    [
+        (0, "positive metres, got 21.0 and 0.0"),
+        ("nan", "positive metres, got 21.0 and nan"),
+        (0.001, "carving would need 51,750 GiB; at most 1,073,741,824 fit. Use a larger spacing"),
+        (1e-12, "Use a larger spacing"),
+    ],
+)
+def test_grids_that_cannot_be_are_refused(capsys, one_frame, spacing_m, said):
+    frames = one_frame[1], one_frame[1]
+    assert said in refused(capsys, "reconstruct", *frames, "--spacing-m", spacing_m)
+
+
 def test_misses_are_views(capsys, one_frame):
     line = refused(capsys, "reconstruct", one_frame[1], "--tolerated-misses", -1)
     assert "--tolerated-misses wants the number of views" in line

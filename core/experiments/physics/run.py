@@ -38,9 +38,7 @@ def run_physics(
         raise ValueError(
             f'There is no part "{unknown[0]}" of the physics; take {", ".join(PARTS)}.'
         )
-    found = []
-    for name in parts:
-        found.append(PARTS[name](partial(_within, progress, name)))
+    found = [PARTS[name](partial(_within, progress, name)) for name in parts]
     results = Results(
         name="physics",
         settings={"parts": list(parts)},
