@@ -10,6 +10,7 @@ import pytest
 import trimesh
 
 from app.command_line import main
+from app.sources import pass_source
 from core.formats.pass_file import RecordedPass, read_pass, write_pass
 from core.radar.intervals import divide
 
@@ -378,3 +379,26 @@ def test_a_port_in_use_is_named(capsys):
 def test_the_temple_needs_its_photographs(capsys, tmp_path):
     assert "--data FOLDER" in refused(capsys, "experiment", "temple")
     assert str(tmp_path) in refused(capsys, "experiment", "temple", "--data", tmp_path)
+
+
+def test_telescope_frames_go_beside_the_echoes_and_stay_when_they_are_imaged(tmp_path):
+    simulated, imaged = tmp_path / "dusk.h5", tmp_path / "imaged.h5"
+    when = ["--start", "2016-03-24T10:00:00", "--prf-hz", "60", "--frequency-count", "256"]
+    main(["simulate", str(simulated), "--scatterers", "300", "--optical", "2", *when])
+    recorded = read_pass(simulated)
+    assert [frame.sensor for frame in recorded.frames] == ["optical", "optical"]
+    words = ["--pixels", "256", "--pixel-spacing-m", "0.12", "--resolution-m", "0.6"]
+    main(["image", str(simulated), str(imaged), *words])
+    sensors = [frame.sensor for frame in read_pass(imaged).frames]
+    assert sensors.count("optical") == 2
+    assert sensors.count("radar") > 2
+    assert pass_source(simulated).expected_frames > 2
+
+
+def test_no_telescope_sees_a_target_in_the_earths_shadow(tmp_path, capsys):
+    words = ["--scatterers", "30", "--optical", "2", "--mask-deg", "38"]
+    with pytest.raises(SystemExit) as ended:
+        main(["simulate", str(tmp_path / "night.h5"), *words])
+    assert ended.value.code == 2
+    assert "Earth's shadow" in capsys.readouterr().err
+    assert not (tmp_path / "night.h5").exists()
