@@ -10,6 +10,7 @@ from app.snapshot import Record, Snapshot
 from app.source import Source
 from core.arrays import Floats
 from core.geometry.track import angles_from_line_of_sight
+from core.hull.simplification import Simplified
 from core.measurement.extents import Extent
 from core.measurement.lines import LineMeasurement
 
@@ -35,6 +36,7 @@ def state_facts(snapshot: Snapshot, source: Source, side_m: float) -> dict[str, 
         "following": snapshot.chosen is None,
         "window_m": side_m,
         "hull": None if snapshot.hull is None else hull_facts(snapshot.hull),
+        "light": None if snapshot.light is None else _light_facts(snapshot.light),
     }
 
 
@@ -52,6 +54,11 @@ def hull_facts(record: Record) -> dict[str, Any]:
         "lines": [_line_facts(line) for line in record.lines],
         "unobserved": _vector(record.unobserved),
     }
+
+
+def _light_facts(light: Simplified) -> dict[str, Any]:
+    """Return how the drawn surface differs from the hull; every number is of the hull itself."""
+    return {"faces": len(light.surface.faces), "error_m": light.error_m}
 
 
 def frame_facts(record: Record) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from typing import Literal
 
 from core.arrays import Floats
 from core.frame import Frame
+from core.hull.simplification import Simplified
 from core.hull.surface import Surface
 from core.measurement.extents import Extent
 from core.measurement.lines import LineMeasurement
@@ -56,6 +57,8 @@ class Snapshot:
         speed_hz: frames per second, None for as fast as they are computed.
         records: one per frame so far, oldest first.
         surface: the hull of all of them, None before the first.
+        light: the same with fewer faces for the browser to draw once no more frames come, None
+            until then and where the hull has few enough.
         chosen: number of the frame that the analyst picked, None to follow the latest.
     """
 
@@ -66,6 +69,7 @@ class Snapshot:
     speed_hz: float | None
     records: tuple[Record, ...] = ()
     surface: Surface | None = None
+    light: Simplified | None = None
     chosen: int | None = None
 
     @property
@@ -74,6 +78,11 @@ class Snapshot:
         if not self.records:
             return None
         return self.records[-1 if self.chosen is None else self.chosen - 1]
+
+    @property
+    def drawn(self) -> Surface | None:
+        """The surface that the browser draws."""
+        return self.surface if self.light is None else self.light.surface
 
     @property
     def hull(self) -> Record | None:

@@ -1,6 +1,7 @@
 """The sources that commands play and carve: the demo, and pass files."""
 
 from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
 
 from app.source import Source
@@ -22,20 +23,19 @@ def demo_source() -> Source:
 
 
 def pass_source(path: Path) -> Source:
-    """Return a pass file's frames, or the images of its echoes where it holds no frames.
+    """Return a pass file's frames, and the images of its echoes where it holds no radar frames.
 
     Raises:
         ValueError: no readable pass file, or echoes that cannot be imaged.
     """
     recorded = read_pass(path)
-    if recorded.frames:
-        return Source(
-            name=path.name, frames=lambda: recorded.frames, expected_frames=len(recorded.frames)
-        )
-    history = recorded.history
-    assert history is not None
+    received, history = recorded.frames, recorded.history
+    if history is None or any(frame.sensor == "radar" for frame in received):
+        return Source(name=path.name, frames=lambda: received, expected_frames=len(received))
     return Source(
-        name=path.name, frames=lambda: frames(history), expected_frames=frame_count(history)
+        name=path.name,
+        frames=lambda: chain(frames(history), received),
+        expected_frames=frame_count(history) + len(received),
     )
 
 

@@ -12,10 +12,14 @@ from app.snapshot import Snapshot, Status, record_of
 from app.source import Source
 from core.frame import Frame
 from core.hull.closed_mesh import Surface
+from core.hull.simplification import simplified
 from core.hull.volume import VoteVolume
 from core.reconstruction import ReconstructionSettings, Step, reconstruct
 
 SurfaceOf = Callable[[VoteVolume], Surface]
+
+MOST_IDLE_FACES = 100_000
+"""That a browser without a graphics card still turns smoothly."""
 
 _log = logging.getLogger("radarhull")
 
@@ -166,6 +170,18 @@ class LiveStream:
         if not self.snapshot.records and not self._is_over(run):
             raise ValueError(f"{self.source.name} holds no frames, so there is nothing to carve.")
         self._end(run, "finished")
+        # Seconds of work for half a million faces; the whole hull is on show meanwhile.
+        self._lighten(run)
+
+    def _lighten(self, run: int) -> None:
+        """Give the browser fewer faces to draw, now that no frame will change them."""
+        surface = self.snapshot.surface
+        if surface is None or len(surface.faces) <= MOST_IDLE_FACES:
+            return
+        light = simplified(surface, most_faces=MOST_IDLE_FACES)
+        with self._changing():
+            if not self._is_over(run):
+                self._publish(replace(self._snapshot, light=light))
 
     def _release(self, run: int, step: Step) -> bool:
         """Publish a step once playback lets it; tell whether the run goes on."""

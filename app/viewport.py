@@ -97,9 +97,9 @@ class Viewport:
     def show(self, snapshot: Snapshot) -> None:
         """Bring the scene up to date; does nothing for what is already there."""
         with self._server.atomic():
-            hull_is_new = snapshot.surface is not self._hull_shown
+            hull_is_new = snapshot.drawn is not self._hull_shown
             if hull_is_new:
-                self._show_hull(snapshot.surface)
+                self._show_hull(snapshot.drawn)
                 self._show_aspects(snapshot.records)
             if hull_is_new or snapshot.shown is not self._frame_shown:
                 self._show_frame(snapshot.shown)

@@ -32,6 +32,9 @@ class Frame:
         label: what the frame is called where a person sees it.
         window: what weighed both axes, as `core.radar.window.window_named` reads it; it shapes
             the point response.
+        sun_direction: (3,) unit vector from target to sun, target frame, where that is what lights
+            the image: it shows the sunlit side only. None for radar, and where the light is not
+            known.
     """
 
     amplitude: NDArray[np.float32]
@@ -45,6 +48,7 @@ class Frame:
     column_resolution_m: float | None = None
     label: str = ""
     window: str = "hamming"
+    sun_direction: Floats | None = None
 
     def __post_init__(self) -> None:
         amplitude = frozen(self.amplitude, np.float32, (None, None), "Frame amplitude")
@@ -53,10 +57,9 @@ class Frame:
         if float(amplitude.min()) < 0:
             raise ValueError("A frame holds amplitudes, which are not negative; take the modulus.")
         object.__setattr__(self, "amplitude", amplitude)
-        line_of_sight = frozen(self.line_of_sight, np.float64, (3,), "Line of sight")
-        if abs(float(np.linalg.norm(line_of_sight)) - 1) > 1e-6:
-            raise ValueError(f"The line of sight must be a unit vector, got {line_of_sight}.")
-        object.__setattr__(self, "line_of_sight", line_of_sight)
+        _freeze_unit(self, "line_of_sight", "line of sight")
+        if self.sun_direction is not None:
+            _freeze_unit(self, "sun_direction", "sun's direction")
         if not np.isfinite(self.time_s):
             raise ValueError(f"A frame's time must be finite seconds, got {self.time_s}.")
         for name in LENGTHS:
@@ -77,3 +80,10 @@ class Frame:
         relative = self.amplitude / np.float32(peak if peak > 0 else 1.0)
         level: NDArray[np.float32] = 20 * np.log10(np.maximum(relative, np.float32(floor)))
         return level
+
+
+def _freeze_unit(frame: Frame, name: str, title: str) -> None:
+    vector = frozen(getattr(frame, name), np.float64, (3,), f"The {title}")
+    if abs(float(np.linalg.norm(vector)) - 1) > 1e-6:
+        raise ValueError(f"The {title} must be a unit vector, got {vector}.")
+    object.__setattr__(frame, name, vector)

@@ -7,7 +7,8 @@ from core.arrays import Floats
 from core.frame import Frame
 from core.geometry.grid import VoxelGrid
 from core.hull.registration import centroid_registered
-from core.hull.shadow import CarvingRule, carving_view
+from core.hull.shadow import CarvingRule
+from core.hull.sunlight import MOST_PHASE_RAD, carving_frame_view, unfit_to_carve
 from core.hull.surface import EMPTY_SURFACE, Surface
 from core.hull.view import View
 from core.hull.volume import VoteVolume
@@ -26,13 +27,16 @@ class ReconstructionSettings:
 
     Attributes:
         spacing_m: voxel spacing.
-        side_m: side of the cubic grid, centred on the target frame's origin.
+        side_m: side of the cubic grid, centred on the target frame's origin; the target is taken
+            to be no longer in any direction.
         rule: "shadow" carves nothing behind the first return, "strict" is the paper's rule.
         tolerated_misses: a voxel stays while at most this many views miss it, so that the vote
             threshold T of eq. 25 is the number of views less this; 0 is the paper's T = I.
         registers_centroids: whether frames are shifted to a common centroid (section III.D),
             for frames whose offsets are unknown.
         extraction: how silhouettes are taken from frames.
+        most_phase_rad: sunlit outlines vote up to this angle at the target between the sun and
+            the observer; π lets all vote.
     """
 
     spacing_m: float = 0.15
@@ -41,6 +45,7 @@ class ReconstructionSettings:
     tolerated_misses: int = 0
     registers_centroids: bool = False
     extraction: ExtractionSettings = field(default_factory=ExtractionSettings)
+    most_phase_rad: float = MOST_PHASE_RAD
 
     def __post_init__(self) -> None:
         if self.tolerated_misses < 0:
@@ -87,8 +92,8 @@ def reconstruct(
 ) -> Iterator[Step]:
     """Carve a hull frame by frame and yield the state after each.
 
-    A frame in which no target is detected says nothing of where the target is; it is noted and
-    does not vote.
+    A frame in which no target is detected says nothing of where the target is, and one against
+    the sun too little; they are noted and do not vote.
 
     Args:
         frames: in any order.
@@ -104,17 +109,20 @@ def reconstruct(
     for number, received in enumerate(frames, start=1):
         silhouette = extract_silhouette(received, settings.extraction)
         frame = received
-        if not silhouette.is_empty:
+        unfit = unfit_to_carve(received, silhouette, settings.most_phase_rad)
+        if not unfit:
             if settings.registers_centroids:
                 frame = _registered(received, silhouette)
-            view = View(silhouette=silhouette, projection=frame.projection)
-            views.append(carving_view(view, settings.rule))
+            views.append(
+                carving_frame_view(frame, silhouette, settings.rule, depth_m=settings.side_m)
+            )
             volume.add(views[-1])
             volume.threshold = max(1, len(views) - settings.tolerated_misses)
         yield _step(
             number=number,
             frame=frame,
             silhouette=silhouette,
+            note=f"frame {number} {unfit} and does not vote" if unfit else "",
             volume=volume,
             views=views,
             surface=surface_of(volume) if views else EMPTY_SURFACE,
@@ -126,19 +134,19 @@ def _step(
     number: int,
     frame: Frame,
     silhouette: Silhouette,
+    note: str,
     volume: VoteVolume,
     views: Sequence[View],
     surface: Surface,
 ) -> Step:
     extents = () if surface.is_empty else axis_extents(surface, volume.grid, views)
     is_closed = bool(extents) and all(extent.is_bounded for extent in extents)
-    missing = f"frame {number} shows no target and does not vote" if silhouette.is_empty else ""
     return Step(
         number=number,
         voting=len(views),
         frame=frame,
         silhouette=silhouette,
-        note=missing,
+        note=note,
         surface=surface,
         threshold=volume.threshold or 0,
         extents=extents,

@@ -10,16 +10,20 @@ from app.commands.console import Report, progress_bars
 from app.commands.options import (
     JsonTo,
     OptionalFloat,
+    OptionalFolder,
     OptionalInt,
     checked_seed,
     checked_snr_db,
 )
-from app.commands.outputs import checked_json, show_results
+from app.commands.outputs import checked_folder, checked_json, show_results, write_json
+from core.experiments.physics.run import PARTS, run_physics
+from core.experiments.pictures import write_pictures
+from core.experiments.report import write_report
 from core.experiments.results import Results
 from core.experiments.temple import run_temple
 from core.experiments.wide import run_wide
 
-Experiment = Literal["wide", "temple"]
+Experiment = Literal["wide", "temple", "physics"]
 
 
 def experiment(
@@ -27,7 +31,9 @@ def experiment(
     /,
     *,
     json: JsonTo = None,
-    data: Annotated[Path | None, tyro.conf.arg(metavar="FOLDER", help_behavior_hint="")] = None,
+    data: OptionalFolder = None,
+    out: OptionalFolder = None,
+    part: Annotated[tuple[str, ...], tyro.conf.arg(metavar="PART", help_behavior_hint="")] = (),
     views: OptionalInt = None,
     spacing_m: OptionalFloat = None,
     snr_db: OptionalFloat = None,
@@ -37,18 +43,27 @@ def experiment(
 
     wide: a Tiangong-like target under views over the whole sphere, from simulated echoes to
     lengths, by the shadow rule and by the paper's strict rule. temple: the hull of a real object
-    from 16 calibrated photographs (Middlebury templeSparseRing).
+    from 16 calibrated photographs (Middlebury templeSparseRing). physics: scattering, coherent
+    intervals, imaging, focusing, registration and optics against theory and measured data.
 
     Args:
         name: which experiment.
         json: write settings and figures as JSON to this file, or to standard output for "-".
-        data: folder of the photographs (temple only).
+        data: folder of the photographs (temple), or of the measured Gotcha history (physics).
+        out: folder to write results.json, report.html and the pictures into (physics only).
+        part: parts of the physics to run, all by default (physics only).
         views: number of views (wide only; 80 by default).
         spacing_m: voxel spacing in metres; 0.15 (wide) or 0.0005 (temple) by default.
         snr_db: signal-to-noise ratio per pulse and frequency sample (wide only; 20 dB by default).
         seed: of the random generator (wide only; 1 by default).
     """
     checked_json(json)
+    if name == "physics":
+        _refuse_foreign(name, {"--views": views, "--spacing-m": spacing_m, "--snr-db": snr_db})
+        _refuse_foreign(name, {"--seed": seed})
+        _physics(part, data, out, json)
+        return
+    _refuse_foreign(name, {"--out": out, "--part": part or None})
     if name == "wide":
         _refuse_foreign(name, {"--data": data})
         settings = {
@@ -74,6 +89,20 @@ def experiment(
 def _wide(settings: Mapping[str, Any], report: Report) -> Results:
     chosen = {name: value for name, value in settings.items() if value is not None}
     return run_wide(**chosen, progress=report)
+
+
+def _physics(
+    parts: tuple[str, ...], gotcha: Path | None, out: Path | None, json: str | None
+) -> None:
+    if out is not None:
+        checked_folder(out)
+    with progress_bars() as report:
+        results, pictures = run_physics(parts=parts or tuple(PARTS), progress=report)
+    if out is not None:
+        write_pictures(pictures, out)
+        write_report(out / "report.html", results, pictures)
+        write_json(str(out / "results.json"), results.to_json())
+    show_results(results, json)
 
 
 def _refuse_foreign(name: Experiment, options: Mapping[str, object]) -> None:

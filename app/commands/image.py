@@ -100,7 +100,8 @@ def image(
     assessed = assessed_intervals(history, settings) if divides else ()
     made = _made(history, settings, assessed)
     parts = unsuitable_parts(history.track, assessed)
-    write_pass(out, RecordedPass(history=history, frames=tuple(made)))
+    others = [frame for frame in recorded.frames if frame.sensor != "radar"]
+    write_pass(out, RecordedPass(history=history, frames=(*made, *others)))
     if picture is not None:
         write_picture(picture, max(made, key=lambda frame: float(frame.amplitude.max())))
     show_summary(

@@ -16,6 +16,7 @@ _UNSET = ""
 PassFile = Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="PASS")]
 OutputFile = Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="OUT")]
 OptionalFile = Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint=_UNSET)]
+OptionalFolder = Annotated[Path | None, tyro.conf.arg(metavar="FOLDER", help_behavior_hint=_UNSET)]
 JsonTo = Annotated[str | None, tyro.conf.arg(metavar="FILE", help_behavior_hint=_UNSET)]
 OptionalInt = Annotated[int | None, tyro.conf.arg(metavar="INT", help_behavior_hint=_UNSET)]
 OptionalFloat = Annotated[float | None, tyro.conf.arg(metavar="FLOAT", help_behavior_hint=_UNSET)]

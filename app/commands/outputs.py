@@ -8,7 +8,7 @@ from typing import Any
 
 from app.commands.console import show_table
 from core.experiments.results import Results
-from core.formats.files import checked_output, written_aside
+from core.formats.files import checked_output, reason, written_aside
 from core.radar.phase_history import PhaseHistory
 
 STANDARD_OUTPUT = "-"
@@ -21,6 +21,20 @@ def checked_pass(path: Path) -> Path:
         ValueError: another ending than HDF5's, or a folder that cannot be written.
     """
     return checked_output(path, (".h5", ".hdf5"))
+
+
+def checked_folder(path: Path) -> Path:
+    """Return `path` once it is a folder that can be written to, made if it was missing.
+
+    Raises:
+        ValueError: it is a file, or cannot be made or written to.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ValueError(f"{path} could not be made a folder: {reason(error)}.") from error
+    checked_output(path / "results.json")
+    return path
 
 
 def checked_json(destination: str | None) -> None:

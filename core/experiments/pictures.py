@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 import matplotlib as mpl
 from matplotlib.figure import Figure as Canvas
@@ -64,9 +65,15 @@ def write_pictures(pictures: Sequence[Picture], folder: Path) -> tuple[Path, ...
     return tuple(_written(picture, folder / f"{picture.name}.png") for picture in pictures)
 
 
-def _written(picture: Picture, path: Path) -> Path:
-    with mpl.rc_context(STYLE), written_aside(path) as aside:
+def drawn_png(picture: Picture, target: BinaryIO | Path) -> None:
+    """Draw a picture as PNG into a file or a path."""
+    with mpl.rc_context(STYLE):
         canvas = Canvas(figsize=picture.size_in, layout="constrained")
         picture.draw(canvas)
-        canvas.savefig(aside, dpi=120, format="png")
+        canvas.savefig(target, dpi=120, format="png")
+
+
+def _written(picture: Picture, path: Path) -> Path:
+    with written_aside(path) as aside:
+        drawn_png(picture, aside)
     return path

@@ -8,14 +8,11 @@ from numpy.typing import NDArray
 
 from core.arrays import Floats
 from core.frame import Frame
-from core.geometry.projection import Projection
+from core.optical.camera import camera_projection
 from core.silhouettes.photograph import Photograph
 
 PARAMETERS_PER_LINE = 21
 """K and R, nine numbers each, row by row, and the three of t."""
-
-ROTATION_TOLERANCE = 1e-3
-"""How far R Rᵀ may be from the identity; the data sets reach 1e-6."""
 
 
 def read_photographs(folder: Path) -> tuple[Photograph, ...]:
@@ -34,27 +31,6 @@ def read_photographs(folder: Path) -> tuple[Photograph, ...]:
     """
     lines = _camera_lines(_camera_list(folder))
     return tuple(_photograph(folder, number, *line) for number, line in enumerate(lines))
-
-
-def camera_projection(intrinsics: Floats, rotation: Floats, translation_m: Floats) -> Projection:
-    """Return the projection to (row, column) of a camera that gives (x, y) pixels by K [R t].
-
-    Args:
-        intrinsics: (3, 3) K, pixels.
-        rotation: (3, 3) R from target frame to camera.
-        translation_m: (3,) t, the target frame's origin as the camera sees it.
-
-    Raises:
-        ValueError: R is no rotation.
-    """
-    skew = float(np.abs(rotation @ rotation.T - np.eye(3)).max())
-    if skew > ROTATION_TOLERANCE or float(np.linalg.det(rotation)) < 0:
-        raise ValueError(
-            f"R must be a rotation, but R Rᵀ differs from the identity by {skew:.2g} and "
-            f"det R is {float(np.linalg.det(rotation)):.3g}."
-        )
-    to_column_row = intrinsics @ np.column_stack([rotation, translation_m])
-    return Projection(matrix=to_column_row[[1, 0, 2]])
 
 
 def _camera_list(folder: Path) -> Path:

@@ -6,7 +6,8 @@ Layout, schema version 1 (every dataset carries its unit in the attribute `unit`
     /history/samples      (pulses, frequencies) complex64
     /history/frequency_hz (frequencies,)
     /track/time_s …       the fields of `LineOfSightTrack`, attribute epoch_utc
-    /frames/000000/…      amplitude (rows, columns), matrix (2 or 3, 4), line_of_sight (3,);
+    /frames/000000/…      amplitude (rows, columns), matrix (2 or 3, 4), line_of_sight (3,),
+                          sun_direction (3,) where the sun lights it;
                           attributes time_s, sensor, label, window, spacings and resolutions
 
 A pass file may come from anywhere, so it is read as untrusted: `core.formats.untrusted_hdf5`.
@@ -151,6 +152,8 @@ def _write_frame(group: h5py.Group, frame: Frame) -> None:
     _write_array(group, "amplitude", frame.amplitude, "1", **packed)
     _write_array(group, "matrix", frame.projection.matrix, "pixel/m")
     _write_array(group, "line_of_sight", frame.line_of_sight, "1")
+    if frame.sun_direction is not None:
+        _write_array(group, "sun_direction", frame.sun_direction, "1")
     group.attrs["time_s"] = frame.time_s
     group.attrs["sensor"] = frame.sensor
     group.attrs["label"] = frame.label
@@ -179,5 +182,8 @@ def _read_frames(file: h5py.File) -> Iterable[Frame]:
             sensor=sensor,
             label=read_attribute(group, "label", str, default=""),
             window=window_named(read_attribute(group, "window", str, default=HAMMING.name)).name,
+            sun_direction=(
+                read_array(group, "sun_direction", "1") if "sun_direction" in group else None
+            ),
             **lengths,
         )

@@ -37,9 +37,10 @@ class VoxelGrid:
                 f"A grid needs at least 2 voxels along each of 3 axes, got {self.shape}."
             )
         if self.voxel_count > MAX_VOXELS:
+            gibibytes = -(-self.voxel_count // 2**30)
             raise ValueError(
                 f"A grid of {self.shape} holds {self.voxel_count:,} voxels; one byte each would "
-                f"need {self.voxel_count / 2**30:,.0f} GiB; at most {MAX_VOXELS:,} can be carved. "
+                f"need {gibibytes:,} GiB; at most {MAX_VOXELS:,} can be carved. "
                 "Use a larger spacing."
             )
 
@@ -50,24 +51,45 @@ class VoxelGrid:
             raise ValueError(
                 f"Grid side and spacing must be positive metres, got {side_m} and {spacing_m}."
             )
+        if not np.isfinite(side_m / spacing_m):
+            raise ValueError(
+                f"A grid of {side_m} m at a spacing of {spacing_m} m holds more voxels than any "
+                "memory; use a larger spacing."
+            )
         count = max(2, round(side_m / spacing_m))
         origin = np.full(3, -0.5 * (count - 1) * spacing_m)
         return cls(origin_m=origin, spacing_m=spacing_m, shape=(count, count, count))
 
     @classmethod
     def over(cls, *, lower_m: Floats, upper_m: Floats, spacing_m: float) -> "VoxelGrid":
-        """Return the smallest grid whose centres reach from `lower_m` to `upper_m`, both (3,)."""
-        extent = np.asarray(upper_m, dtype=np.float64) - np.asarray(lower_m, dtype=np.float64)
-        counts = np.maximum(np.ceil(extent / spacing_m - 1e-9).astype(int) + 1, 2)
-        return cls(
-            origin_m=np.asarray(lower_m, dtype=np.float64),
-            spacing_m=spacing_m,
-            shape=(int(counts[0]), int(counts[1]), int(counts[2])),
+        """Return the smallest grid whose centres reach from `lower_m` to `upper_m`, both (3,).
+
+        Raises:
+            ValueError: a corner that is not finite, upper below lower, no positive spacing, or
+                too many voxels.
+        """
+        lower, upper = (
+            frozen(corner, np.float64, (3,), f"The grid's {name} corner")
+            for corner, name in ((lower_m, "lower"), (upper_m, "upper"))
         )
+        if not (np.isfinite(spacing_m) and spacing_m > 0):
+            raise ValueError(f"Voxel spacing must be a positive length in metres, got {spacing_m}.")
+        if np.any(upper < lower):
+            raise ValueError(f"A grid's upper corner {upper} must not lie below its lower {lower}.")
+        # Python's floats, too, overflow to infinity without a warning.
+        steps = [extent / spacing_m for extent in (upper - lower).tolist()]
+        if not all(map(math.isfinite, steps)):
+            raise ValueError(
+                f"A grid from {lower} to {upper} m at a spacing of {spacing_m} m holds more voxels "
+                "than any memory; use a larger spacing."
+            )
+        x, y, z = (max(2, math.ceil(count - 1e-9) + 1) for count in steps)
+        return cls(origin_m=lower, spacing_m=spacing_m, shape=(x, y, z))
 
     @property
     def voxel_count(self) -> int:
         """Number of voxels."""
+        # Python's own integers: NumPy's would wrap around and let a far too large grid pass.
         return math.prod(map(int, self.shape))
 
     @property

@@ -103,10 +103,16 @@ def range_doppler_projection(
         shape: (rows, columns) of the image; the origin lands on (rows // 2, columns // 2).
 
     Raises:
-        ValueError: the line of sight stands still, so that there is no cross-range axis.
+        ValueError: the line of sight stands still, so that there is no cross-range axis, or a
+            pixel has no size.
 
     Source: eqs. 5 and 6, with rows in range k·p and columns in cross-range along dk/dt.
     """
+    for name, spacing_m in (("Row", row_spacing_m), ("Column", column_spacing_m)):
+        if not (np.isfinite(spacing_m) and spacing_m > 0):
+            raise ValueError(
+                f"{name} spacing of an image must be positive metres, got {spacing_m}."
+            )
     line_of_sight_m = np.asarray(line_of_sight, dtype=np.float64)
     rate = np.asarray(line_of_sight_rate_per_s, dtype=np.float64)
     rate = rate - line_of_sight_m * (line_of_sight_m @ rate)

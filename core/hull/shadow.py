@@ -6,6 +6,7 @@ if no return lies nearer the radar in its cross-range cell. Filling the outline 
 radar says exactly that, and the vote engine needs to know nothing of it.
 """
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -54,13 +55,29 @@ def filled_away_from_radar(silhouette: Silhouette) -> Silhouette:
     )
 
 
-def _edge_shadows(ring: Floats, far_row: float) -> Floats:
-    """Return the quadrilaterals (n, 5, 2) between each edge and `far_row`."""
+def filled_as_far_as(silhouette: Silhouette, reach_rows: float) -> Silhouette:
+    """Return the silhouette joined with what lies behind it up to `reach_rows` along the rows."""
+    if silhouette.is_empty:
+        return silhouette
+    parts = [_edge_shadows(ring, ring[:, 0] + reach_rows) for ring in silhouette.rings]
+    shadows = list(shapely.polygons(np.concatenate(parts)))
+    # Every ring whole: what is unlit within one is behind its near edge, within reach or not.
+    bodies = [shapely.make_valid(shapely.polygons(ring)) for ring in silhouette.rings]
+    return replace(
+        silhouette,
+        rings=rings_of(shapely.union_all([*bodies, *shadows])),
+        claim="complete",
+        provenance=f"{silhouette.provenance}, filled away from the sun".lstrip(", "),
+    )
+
+
+def _edge_shadows(ring: Floats, far_row: float | Floats) -> Floats:
+    """Return the quadrilaterals (n, 5, 2) between each edge and `far_row`, one or per vertex."""
+    far = np.column_stack([np.broadcast_to(far_row, len(ring)), ring[:, 1]])
     tail, head = ring, np.roll(ring, -1, axis=0)
     keep = tail[:, 1] != head[:, 1]
-    tail, head = tail[keep], head[keep]
-    far = np.full(len(tail), far_row)
-    corners = [tail, head, np.column_stack([far, head[:, 1]]), np.column_stack([far, tail[:, 1]])]
+    corners = [tail[keep], head[keep], np.roll(far, -1, axis=0)[keep], far[keep]]
+    tail = tail[keep]
     quadrilaterals: Floats = np.stack([*corners, tail], axis=1)
     return quadrilaterals
 

@@ -85,11 +85,12 @@ class VoteCounts:
             ValueError: a grid whose votes memory cannot hold.
         """
         if grid.voxel_count > MOST_STORED_VOXELS:
+            gibibytes = -(-BYTES_PER_VOXEL * grid.voxel_count // 2**30)
             raise ValueError(
                 f"A grid of {grid.shape} holds {grid.voxel_count:,} voxels; storing their votes "
-                f"and meshing them would need {BYTES_PER_VOXEL * grid.voxel_count / 2**30:,.0f} "
-                f"GiB; at most {MOST_STORED_VOXELS:,} fit. Use a larger spacing, or carved_surface "
-                "of core.hull.hull_only, which stores no votes."
+                f"and meshing them would need {gibibytes:,} GiB; at most {MOST_STORED_VOXELS:,} "
+                "fit. Use a larger spacing, or carved_surface of core.hull.hull_only, which "
+                "stores no votes."
             )
         self.grid = grid
         self._votes: Votes = np.zeros(grid.shape, dtype=np.uint8)

@@ -1,6 +1,6 @@
 """From a frame to the target's silhouette: detection, cleaning, tracing."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from core.silhouettes.cfar import detect
 from core.silhouettes.contours import cleaned_mask, traced_rings
 from core.silhouettes.edge import inward_distance_px
 from core.silhouettes.silhouette import Silhouette
+from core.silhouettes.telescope import TelescopeSettings, telescope_silhouette
 
 SIMPLIFICATION_PX = 0.15
 """Rings lose the vertices that move them by less: a twentieth of a resolution cell (IoU moves by
@@ -19,7 +20,7 @@ less than 0.001), and a third of the vertices is left."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExtractionSettings:
-    """How silhouettes are taken from radar frames.
+    """How silhouettes are taken from frames.
 
     Attributes:
         censoring_factor: a₁ of eqs. 18 and 19.
@@ -31,6 +32,7 @@ class ExtractionSettings:
             are not taken for target. It is meant for Hamming; for a frame of another window it
             moves with that window's highest sidelobe.
         corrects_edge: whether the point spread's share of the edge is taken out.
+        telescope: how they are taken from optical frames, for which the others mean nothing.
     """
 
     censoring_factor: float = 3.0
@@ -39,15 +41,20 @@ class ExtractionSettings:
     smallest_part_px: int = 60
     sidelobe_level_db: float = -39.0
     corrects_edge: bool = True
+    telescope: TelescopeSettings = field(default_factory=TelescopeSettings)
 
 
 def extract_silhouette(frame: Frame, settings: ExtractionSettings | None = None) -> Silhouette:
-    """Return the silhouette that a radar frame shows, which is the lit side only.
+    """Return the silhouette that a frame shows: the lit side only, of a radar frame.
+
+    Optical frames go to `telescope_silhouette`.
 
     Raises:
         ValueError: a frame without contrast.
     """
     settings = settings or ExtractionSettings()
+    if frame.sensor == "optical":
+        return telescope_silhouette(frame, settings.telescope)
     detection = detect(
         frame.amplitude,
         censoring_factor=settings.censoring_factor,

@@ -83,7 +83,7 @@ def photograph_silhouette(
     settings = settings or PhotographSettings()
     frame = photograph.frame
     mask = cleaned_mask(
-        _object_mask(photograph, settings),
+        object_mask(photograph, settings),
         closing_px=0,
         smallest_part_px=settings.smallest_part_px,
     )
@@ -114,7 +114,12 @@ def threshold_silhouette(frame: Frame, level: float) -> Silhouette:
     )
 
 
-def _object_mask(photograph: Photograph, settings: PhotographSettings) -> NDArray[np.bool_]:
+def object_mask(photograph: Photograph, settings: PhotographSettings) -> NDArray[np.bool_]:
+    """Return the pixels (rows, columns) that GrabCut, started by Otsu, takes for the object.
+
+    Raises:
+        ValueError: a photograph of one brightness throughout, or with single bright pixels only.
+    """
     frame = photograph.frame
     bright = _bright(frame, settings.gamma)
     window = _window(bright, frame.label, settings.margin_fraction)

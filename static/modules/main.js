@@ -105,7 +105,7 @@ function showHull() {
   showLines(part("lines"), hull.lines);
   part("lines-empty").hidden = hull.lines.length > 0;
   showUnobserved(part("unobserved"), hull.unobserved);
-  showRows(part("hull-facts"), hullRows(hull));
+  showRows(part("hull-facts"), hullRows(hull, state.light));
 }
 
 function noHullText() {

@@ -10,6 +10,7 @@ import pytest
 import trimesh
 
 from app.command_line import main
+from app.sources import pass_source
 from core.formats.pass_file import RecordedPass, read_pass, write_pass
 from core.radar.intervals import divide
 
@@ -286,6 +287,21 @@ def test_frames_without_a_target_do_not_count_as_views(capsys, one_frame, tmp_pa
     assert "at least 2 views; 1 of 2 frames show a target" in err
 
 
+@pytest.mark.parametrize(
+    ("spacing_m", "said"),
+    [
+        (0, "positive metres, got 21.0 and 0.0"),
+        ("nan", "positive metres, got 21.0 and nan"),
+        (0.01, "would need 52 GiB; at most 1,073,741,824 fit. Use a larger spacing"),
+        (0.001, "would need 8,625 GiB; at most 68,719,476,736 can be carved. Use a larger spacing"),
+        (1e-12, "Use a larger spacing"),
+    ],
+)
+def test_grids_that_cannot_be_are_refused(capsys, one_frame, spacing_m, said):
+    frames = one_frame[1], one_frame[1]
+    assert said in refused(capsys, "reconstruct", *frames, "--spacing-m", spacing_m)
+
+
 def test_misses_are_views(capsys, one_frame):
     line = refused(capsys, "reconstruct", one_frame[1], "--tolerated-misses", -1)
     assert "--tolerated-misses wants the number of views" in line
@@ -364,3 +380,26 @@ def test_a_port_in_use_is_named(capsys):
 def test_the_temple_needs_its_photographs(capsys, tmp_path):
     assert "--data FOLDER" in refused(capsys, "experiment", "temple")
     assert str(tmp_path) in refused(capsys, "experiment", "temple", "--data", tmp_path)
+
+
+def test_telescope_frames_go_beside_the_echoes_and_stay_when_they_are_imaged(tmp_path):
+    simulated, imaged = tmp_path / "dusk.h5", tmp_path / "imaged.h5"
+    when = ["--start", "2016-03-24T10:00:00", "--prf-hz", "60", "--frequency-count", "256"]
+    main(["simulate", str(simulated), "--scatterers", "300", "--optical", "2", *when])
+    recorded = read_pass(simulated)
+    assert [frame.sensor for frame in recorded.frames] == ["optical", "optical"]
+    words = ["--pixels", "256", "--pixel-spacing-m", "0.12", "--resolution-m", "0.6"]
+    main(["image", str(simulated), str(imaged), *words])
+    sensors = [frame.sensor for frame in read_pass(imaged).frames]
+    assert sensors.count("optical") == 2
+    assert sensors.count("radar") > 2
+    assert pass_source(simulated).expected_frames > 2
+
+
+def test_no_telescope_sees_a_target_in_the_earths_shadow(tmp_path, capsys):
+    words = ["--scatterers", "30", "--optical", "2", "--mask-deg", "38"]
+    with pytest.raises(SystemExit) as ended:
+        main(["simulate", str(tmp_path / "night.h5"), *words])
+    assert ended.value.code == 2
+    assert "Earth's shadow" in capsys.readouterr().err
+    assert not (tmp_path / "night.h5").exists()

@@ -3,6 +3,8 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
+from app import stream as stream_module
+from app.facts import state_facts
 from app.playback import Playback
 from app.snapshot import Snapshot
 from app.source import Source
@@ -30,7 +32,9 @@ def start() -> Iterator[Callable[..., LiveStream]]:
     yield start_one
     for stream in started:
         stream.stop()
-    assert set(threading.enumerate()) <= before
+    # The pool of the hull's kernels is the process' own and stays.
+    left = {thread for thread in threading.enumerate() if not thread.name.startswith("hull_")}
+    assert left <= before
 
 
 def test_plays_every_frame_and_keeps_the_latest_hull(start, wait_for) -> None:
@@ -42,6 +46,32 @@ def test_plays_every_frame_and_keeps_the_latest_hull(start, wait_for) -> None:
     assert len(snapshot.surface.vertices_m) == snapshot.hull.vertex_count
     volumes = [record.volume_m3 for record in snapshot.records]
     assert volumes == sorted(volumes, reverse=True)
+
+
+def test_a_hull_of_many_faces_is_drawn_lightly_once_no_frame_comes(
+    start, wait_for, monkeypatch
+) -> None:
+    monkeypatch.setattr(stream_module, "MOST_IDLE_FACES", 1000)
+    stream = start()
+    seen: list[Snapshot] = []
+    stream.observe(seen.append)
+    wait_for(lambda: stream.snapshot.light is not None)
+    snapshot = stream.snapshot
+    assert len(snapshot.drawn.faces) <= 1000 < len(snapshot.surface.faces)
+    assert snapshot.hull.face_count == len(snapshot.surface.faces)
+    facts = state_facts(snapshot, stream.source, 24.0)["light"]
+    assert facts == {"faces": len(snapshot.drawn.faces), "error_m": snapshot.light.error_m}
+    assert 0 < facts["error_m"] < SETTINGS.spacing_m
+    assert snapshot.status == "finished"
+    assert all(state.light is None for state in seen if state.status != "finished")
+
+
+def test_a_hull_of_few_faces_is_drawn_as_it_is(start, wait_for) -> None:
+    stream = start()
+    wait_for(lambda: stream.snapshot.status == "finished")
+    assert stream.snapshot.light is None
+    assert stream.snapshot.drawn is stream.snapshot.surface
+    assert state_facts(stream.snapshot, stream.source, 24.0)["light"] is None
 
 
 def test_observers_see_each_frame_once_and_in_order(start, wait_for) -> None:

@@ -18,7 +18,9 @@ def test_the_true_hull_holds_the_body_and_fits_its_panels() -> None:
     assert distances_m(sampled_points(hull, 50), hull).max() < 1e-6
 
 
-def test_the_exact_surface_is_nearer_than_the_binary_one() -> None:
+def test_the_exact_surfaces_are_nearer_than_the_binary_one() -> None:
     results = run_surface(sizes=((64, 10),), samples=200)
     figures = {figure.name: figure.value for figure in results.figures}
-    assert figures["64³×10: times better than binary marching cubes"] > 1.2
+    for method in ("dual", "snapped"):
+        assert figures[f"64³×10, {method}: times better than binary marching cubes"] > 1.2
+    assert [row[1] for row in results.tables[0].rows] == ["binary", "dual", "snapped"]

@@ -2,7 +2,8 @@ import cv2
 import numpy as np
 import pytest
 
-from core.formats.middlebury import camera_projection, read_photographs
+from core.formats.middlebury import read_photographs
+from core.optical.camera import camera_projection
 
 INTRINSICS = np.array([[1500.0, 0, 30], [0, 1400, 20], [0, 0, 1]])
 LOOKING_ALONG_Z = np.eye(3)

@@ -3,7 +3,8 @@ import pytest
 import trimesh
 
 from core.geometry.grid import VoxelGrid
-from core.hull.surface import mask_surface
+from core.hull.surface import hull_surface, mask_surface
+from tests.hull.test_mesher import box_volume
 
 GRID = VoxelGrid.cube(side_m=8.0, spacing_m=0.25)
 
@@ -34,3 +35,12 @@ def test_an_empty_hull_has_an_empty_surface():
     surface = mask_surface(np.zeros(GRID.shape, bool), GRID)
     assert surface.is_empty
     assert surface.volume_m3() == 0
+
+
+def test_both_exact_meshers_can_be_asked_for():
+    volume, _ = box_volume()
+    snapped, dual = (hull_surface(volume, method=method) for method in ("snapped", "dual"))
+    assert np.array_equal(snapped.vertices_m, hull_surface(volume).vertices_m)
+    assert len(dual.vertices_m) != len(snapped.vertices_m)
+    with pytest.raises(ValueError, match='"snapped" or "dual", not "cubes"'):
+        hull_surface(volume, method="cubes")
