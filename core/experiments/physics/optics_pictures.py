@@ -51,7 +51,7 @@ def pass_picture(scene: Scene) -> Picture:
                 cell.legend(loc="lower left")
 
     return Picture(
-        name="optics_pass",
+        name="optics-pass",
         caption=(
             f"Telescope frames (3.67 m, 0.7 µm) of the laboratory's pass over Beijing from "
             f"{scene.start_utc:%Y-%m-%d %H:%M:%S} UTC on, 20 m wide, each scaled to its "
@@ -74,7 +74,7 @@ def partner_picture(scene: Scene) -> Picture:
         left.legend(loc="lower left")
 
     return Picture(
-        name="optics_partner",
+        name="optics-partner",
         caption=(
             "A radar frame and the telescope's frame of the same moment along the same line of "
             "sight: both show the same extent along cross-range, and what one cannot see lies "
@@ -98,7 +98,7 @@ def checks_picture(curves: Mapping[str, Curve]) -> Picture:
         left.legend()
 
     return Picture(
-        name="optics_checks",
+        name="optics-checks",
         caption=(
             "Rendered light against theory: Lambert's phase law, Airy's point spread and the "
             "photons' variance, which equals their mean."
