@@ -34,8 +34,9 @@ def bench(
 
     carve: all votes, against every peer that is installed and against the exact votes. edit: from
     a dragged vertex or a new outline to the exact mesh. growth: time and memory against voxels,
-    views and vertices. surface: error against the true hull. image: from the demo's echoes to its
-    60 frames, against back-projection and plain NumPy. Peers come with the extra "bench".
+    views and vertices, with stored votes and hull only. surface: error against the true hull.
+    image: from the demo's echoes to its 60 frames, against back-projection and plain NumPy. Peers
+    come with the extra "bench".
 
     Args:
         name: what to measure.

@@ -14,7 +14,7 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from core.hull.threads import in_parallel, thread_count
+from core.hull.threads import chunks, in_parallel, thread_count
 
 Result = TypeVar("Result")
 Progress = Callable[[str, int, int], None]
@@ -86,8 +86,7 @@ def copy_bandwidth_bytes_per_s(megabytes: int = 256, repeats: int = 5) -> float:
     """
     source = np.ones(megabytes * 2**20, dtype=np.uint8)
     target = np.zeros_like(source)
-    parts = np.array_split(np.arange(len(source)), thread_count())
-    spans = [slice(int(part[0]), int(part[-1]) + 1) for part in parts]
+    spans = [slice(first, last) for first, last in chunks(len(source), per_thread=1)]
 
     def copy(span: slice) -> None:
         np.copyto(target[span], source[span])

@@ -7,11 +7,9 @@ import numpy as np
 
 from core.arrays import Floats, frozen
 
-MAX_VOXELS = 2**30
-"""Voxels that one in-memory volume may hold: 1024³, 2 GiB of votes and 4 GiB while meshed."""
-
-BYTES_PER_VOXEL = 6
-"""Two of votes, and four of the mesher's copy."""
+MAX_VOXELS = 2**36
+"""Voxels of the largest grid, 4096³: what can be carved plane by plane. Who stores a number for
+each voxel asks for less."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -38,12 +36,11 @@ class VoxelGrid:
             raise ValueError(
                 f"A grid needs at least 2 voxels along each of 3 axes, got {self.shape}."
             )
-        # Python's own integers: NumPy's would wrap around and let a far too large grid pass.
-        count = math.prod(int(voxels) for voxels in self.shape)
-        if count > MAX_VOXELS:
+        if self.voxel_count > MAX_VOXELS:
+            gibibytes = -(-self.voxel_count // 2**30)
             raise ValueError(
-                f"A grid of {self.shape} holds {count:,} voxels; carving would need "
-                f"{-(-BYTES_PER_VOXEL * count // 2**30):,} GiB; at most {MAX_VOXELS:,} fit. "
+                f"A grid of {self.shape} holds {self.voxel_count:,} voxels; one byte each would "
+                f"need {gibibytes:,} GiB; at most {MAX_VOXELS:,} can be carved. "
                 "Use a larger spacing."
             )
 
@@ -88,6 +85,12 @@ class VoxelGrid:
             )
         x, y, z = (max(2, math.ceil(count - 1e-9) + 1) for count in steps)
         return cls(origin_m=lower, spacing_m=spacing_m, shape=(x, y, z))
+
+    @property
+    def voxel_count(self) -> int:
+        """Number of voxels."""
+        # Python's own integers: NumPy's would wrap around and let a far too large grid pass.
+        return math.prod(map(int, self.shape))
 
     @property
     def upper_m(self) -> Floats:

@@ -18,6 +18,9 @@ from core.hull.edge_cells import EdgeCells
 from core.hull.outline import Outline
 from core.hull.threads import Compiled, InnerLoop
 
+ORDER_VOXELS = 32
+"""Voxels along z for which one order of the views is kept: neighbours end at the same views."""
+
 MOST_EVENTS = 64
 """Outline crossings of one grid edge that are looked at; more would need a crossing per 1/64."""
 
@@ -33,6 +36,7 @@ class CrossingTables:
             cell, then the number of cell rows and columns, and the number of the first cell.
         starts: (cells + 1,) where each cell's edges start in `edges`.
         edges: which of `points` the edges near each cell start at.
+        lines: (points, 3) as in `EdgeCells`.
     """
 
     to_image: Floats
@@ -40,6 +44,7 @@ class CrossingTables:
     cell_maps: Floats
     starts: NDArray[np.int32]
     edges: NDArray[np.int32]
+    lines: Floats
 
     @classmethod
     def of(
@@ -57,6 +62,7 @@ class CrossingTables:
             cell_maps=_cell_maps(maps, cells, first_cell[:-1]),
             starts=np.concatenate([*starts, [first_edge[-1]]]).astype(np.int32),
             edges=np.concatenate(edges).astype(np.int32),
+            lines=np.concatenate([cell.lines for cell in cells]),
         )
 
 
@@ -76,27 +82,31 @@ def _cell_maps(
 def cross_grid_edges(
     crossed: NDArray[np.int32],
     votes: NDArray[Any],
+    low: NDArray[np.int64],
     threshold: int,
     to_image: Floats,
     points: Floats,
     cell_maps: Floats,
     starts: NDArray[np.int32],
     edges: NDArray[np.int32],
+    lines: Floats,
 ) -> tuple[Floats, NDArray[np.int32]]:  # pragma: no cover - compiled
     """Return where each crossed grid edge leaves the hull, and the outline edge that ends it there.
 
     Args:
-        crossed: (edges, 4) as `mesh_slab` returns them.
-        votes: (nx, ny, nz).
+        crossed: (edges, 4) as `mesh_slab` returns them, counted in the window.
+        votes: (nx, ny, nz) of a window of the grid.
+        low: (3,) index of the window's first voxel.
         threshold: votes from which a voxel is inside.
         to_image: as in `CrossingTables`, like all that follow.
         points: see there.
         cell_maps: see there.
         starts: see there.
         edges: see there.
+        lines: see there.
 
     Returns:
-        vertices: (edges, 3) in voxel indices.
+        vertices: (edges, 3) in the grid's voxel indices.
         causes: (edges, 2) view and point in `points` where the outline edge starts, −1 at the
             grid's end.
     """
@@ -104,15 +114,17 @@ def cross_grid_edges(
     _cross_all(
         crossed,
         votes,
+        low,
         threshold,
         to_image,
         points,
         cell_maps,
         starts,
         edges,
+        lines,
         vertices,
         causes,
-        np.arange(len(to_image)),
+        _orders(votes.shape[2] // ORDER_VOXELS + 2, len(to_image)),
         np.empty((2, 3)),
         np.empty(MOST_EVENTS),
         np.empty(MOST_EVENTS, dtype=np.int64),
@@ -121,19 +133,30 @@ def cross_grid_edges(
     return vertices, causes
 
 
+@numba.njit(**Compiled)  # type: ignore[untyped-decorator]
+def _orders(count: int, views: int) -> NDArray[np.int32]:  # pragma: no cover - compiled
+    """Return the orders (count, views) with which a search begins."""
+    orders = np.empty((count, views), dtype=np.int32)
+    for i in range(count):
+        orders[i] = np.arange(views)
+    return orders
+
+
 @numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _cross_all(
     crossed: NDArray[np.int32],
     votes: NDArray[Any],
+    low: NDArray[np.int64],
     threshold: int,
     to_image: Floats,
     points: Floats,
     cell_maps: Floats,
     starts: NDArray[np.int32],
     edges: NDArray[np.int32],
+    lines: Floats,
     vertices: Floats,
     causes: NDArray[np.int32],
-    order: NDArray[np.int64],
+    orders: NDArray[np.int32],
     ends: Floats,
     event_at: Floats,
     event_step: NDArray[np.int64],
@@ -142,7 +165,7 @@ def _cross_all(
     """Write vertices and causes; what comes after them is room to work in."""
     inner, outer = ends[0], ends[1]
     for i in range(len(crossed)):
-        inside, missing = _ends(crossed[i], votes, inner, outer)
+        inside, missing = _ends(crossed[i], votes, low, inner, outer)
         part = 0.5
         if missing >= 0:
             strict = threshold == len(to_image)
@@ -150,12 +173,13 @@ def _cross_all(
                 inner,
                 outer,
                 missing if strict else -1,
-                order,
+                orders[(crossed[i, 2] + 1) // ORDER_VOXELS],
                 to_image,
                 points,
                 cell_maps,
                 starts,
                 edges,
+                lines,
                 event_at,
                 event_step,
                 event_cause,
@@ -170,18 +194,24 @@ def _cross_all(
 
 @numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
 def _ends(
-    crossed: NDArray[np.int32], votes: NDArray[Any], inner: Floats, outer: Floats
+    crossed: NDArray[np.int32],
+    votes: NDArray[Any],
+    low: NDArray[np.int64],
+    inner: Floats,
+    outer: Floats,
 ) -> tuple[int, int]:  # pragma: no cover - compiled
-    """Write a grid edge's ends, the inside one first; return their votes, −1 outside the grid."""
+    """Write a grid edge's ends, the inside one first; return their votes, −1 outside the window."""
     axis, lower_inside = crossed[3] & 3, crossed[3] >> 2
     for i in range(3):
-        lower, upper = crossed[i], crossed[i] + (i == axis)
+        lower = low[i] + crossed[i]
+        upper = lower + (i == axis)
         inner[i], outer[i] = (lower, upper) if lower_inside else (upper, lower)
-    inside = votes[int(inner[0]), int(inner[1]), int(inner[2])]
-    for i in range(3):
-        if outer[i] < 0 or outer[i] >= votes.shape[i]:
-            return inside, -1
-    return inside, votes[int(outer[0]), int(outer[1]), int(outer[2])]
+    x, y, z = int(inner[0]) - low[0], int(inner[1]) - low[1], int(inner[2]) - low[2]
+    inside = votes[x, y, z]
+    x, y, z = int(outer[0]) - low[0], int(outer[1]) - low[1], int(outer[2]) - low[2]
+    if min(x, y, z) < 0 or x >= votes.shape[0] or y >= votes.shape[1] or z >= votes.shape[2]:
+        return inside, -1
+    return inside, votes[x, y, z]
 
 
 @numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
@@ -198,17 +228,17 @@ def _first_below(
 
 
 @numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
-def _cell(
+def _seen_in_cells(
     cell_maps: Floats, view: int, x: float, y: float, z: float
-) -> int:  # pragma: no cover - compiled
-    """Return the cell in which a view sees a point; a rim cell stands for all beyond."""
+) -> tuple[float, float]:  # pragma: no cover - compiled
+    """Return where a view sees a point, as row and column in cells."""
     m = cell_maps
-    scale = 1 / (m[view, 8] * x + m[view, 9] * y + m[view, 10] * z + m[view, 11])
-    row = (m[view, 0] * x + m[view, 1] * y + m[view, 2] * z + m[view, 3]) * scale
-    column = (m[view, 4] * x + m[view, 5] * y + m[view, 6] * z + m[view, 7]) * scale
-    row = np.floor(min(max(row, 0.0), m[view, 12] - 1))
-    column = np.floor(min(max(column, 0.0), m[view, 13] - 1))
-    return int(m[view, 14] + row * m[view, 13] + column)
+    row = m[view, 0] * x + m[view, 1] * y + m[view, 2] * z + m[view, 3]
+    column = m[view, 4] * x + m[view, 5] * y + m[view, 6] * z + m[view, 7]
+    depth = m[view, 8] * x + m[view, 9] * y + m[view, 10] * z + m[view, 11]
+    if depth == 1.0:
+        return row, column
+    return row / depth, column / depth
 
 
 @numba.njit(**InnerLoop)  # type: ignore[untyped-decorator]
@@ -216,12 +246,13 @@ def _collect(
     inner: Floats,
     outer: Floats,
     votes_outside: int,
-    order: NDArray[np.int64],
+    order: NDArray[np.int32],
     to_image: Floats,
     points: Floats,
     cell_maps: Floats,
     starts: NDArray[np.int32],
     edges: NDArray[np.int32],
+    lines: Floats,
     event_at: Floats,
     event_step: NDArray[np.int64],
     event_cause: NDArray[np.int32],
@@ -237,17 +268,22 @@ def _collect(
     x, y, z = 0.5 * (inner[0] + outer[0]), 0.5 * (inner[1] + outer[1]), 0.5 * (inner[2] + outer[2])
     for rank in range(views):
         view = order[rank]
-        cell = _cell(cell_maps, view, x, y, z)
-        first, last = starts[cell], starts[cell + 1]
-        if first == last:
-            continue
-        before = count
-        pr, pc, pw = _project(to_image, view, inner[0], inner[1], inner[2])
-        qr, qc, qw = _project(to_image, view, outer[0], outer[1], outer[2])
-        pr, pc, qr, qc = pr / pw, pc / pw, qr / qw, qc / qw
-        net = 0
-        for k in range(first, last):
+        row, column = _seen_in_cells(cell_maps, view, x, y, z)
+        rows, columns = cell_maps[view, 12], cell_maps[view, 13]
+        # A rim cell stands for all beyond.
+        cell = int(min(max(row, 0.0), rows - 1)) * int(columns)
+        cell += int(min(max(column, 0.0), columns - 1)) + int(cell_maps[view, 14])
+        before, net, projected = count, 0, False
+        pr, pc, pw, qr, qc, qw = 0.0, 0.0, 1.0, 0.0, 0.0, 1.0
+        for k in range(starts[cell], starts[cell + 1]):
             edge = edges[k]
+            if abs(lines[edge, 0] * row + lines[edge, 1] * column + lines[edge, 2]) > 1.0:
+                continue
+            if not projected:
+                projected = True
+                pr, pc, pw = _project(to_image, view, inner[0], inner[1], inner[2])
+                qr, qc, qw = _project(to_image, view, outer[0], outer[1], outer[2])
+                pr, pc, qr, qc = pr / pw, pc / pw, qr / qw, qc / qw
             part, step = _cross_edge(points, edge, pr, pc, pw, qr, qc, qw)
             if step != 0 and count < MOST_EVENTS:
                 _insert(event_at, event_step, event_cause, count, part, step, view, edge)

@@ -89,12 +89,14 @@ def _slab_crossings(
     places, causes = cross_grid_edges(
         crossed,
         votes,
+        np.zeros(3, dtype=np.int64),
         threshold,
         tables.to_image,
         tables.points,
         tables.cell_maps,
         tables.starts,
         tables.edges,
+        tables.lines,
     )
     normals = np.empty_like(places)
     swept_normals(crossed, causes, tables.to_image, tables.points, normals)

@@ -23,12 +23,15 @@ class EdgeCells:
         shape: (2,) cells along rows and columns.
         starts: (cells + 1,) where each cell's edges start in `edges`.
         edges: numbers of the points at which the edges start.
+        lines: (points, 3) the line through the edge that starts at each point: from row and column
+            in cells and 1 to the distance from it, at most 1 where a grid edge could cross it.
     """
 
     origin: Floats
     shape: NDArray[np.int64]
     starts: NDArray[np.int32]
     edges: NDArray[np.int32]
+    lines: Floats
 
     @classmethod
     def of(cls, outline: Outline, to_image: Floats, grid: VoxelGrid) -> "EdgeCells":
@@ -37,7 +40,8 @@ class EdgeCells:
         if len(points) == 0:
             empty = np.zeros(2, dtype=np.int32)
             one = np.ones(2, dtype=np.int64)
-            return cls(origin=np.zeros(3), shape=one, starts=empty, edges=empty[:0])
+            lines = np.empty((0, 3))
+            return cls(origin=np.zeros(3), shape=one, starts=empty, edges=empty[:0], lines=lines)
         extent = float(np.ptp(points, axis=0).max()) + 2 * reach
         cell = max(reach, extent / CELLS_ACROSS)
         # A rim of empty cells stands for everything beyond.
@@ -45,7 +49,10 @@ class EdgeCells:
         shape = np.floor((points.max(axis=0) + reach - low) / cell).astype(np.int64) + 2
         origin = np.array([low[0], low[1], 1 / cell])
         starts, edges = _sorted_into_cells(points, outline.offsets, origin, shape, reach)
-        return cls(origin=origin, shape=shape, starts=starts, edges=edges)
+        # Seen in perspective a grid edge's middle may lie near one of its ends.
+        far = (0.5 if np.all(to_image[2, :3] == 0) else 1.0) * reach / cell
+        lines = _lines((points - low) / cell) / far
+        return cls(origin=origin, shape=shape, starts=starts, edges=edges, lines=lines)
 
     def to_cell(self, to_image: Floats) -> Floats:
         """Return the 3 × 4 map from homogeneous voxel indices to a cell's row and column."""
@@ -63,6 +70,15 @@ def longest_grid_edge_px(to_image: Floats, grid: VoxelGrid) -> float:
     # The derivative of the projection is greatest at a corner, where the depth is least.
     steps = (to_image[:2, :3] - seen[:, :, None] * to_image[2, :3]) / depth[:, None, None]
     return float(np.linalg.norm(steps, axis=1).max()) * 1.01
+
+
+def _lines(points: Floats) -> Floats:
+    """Return rows (points, 3) that give the distance from the line to the next point."""
+    along = np.diff(points, axis=0, append=points[-1:])
+    # A point without a next one has a line from which nothing is far.
+    length = np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-300)
+    normal = along[:, ::-1] * (1.0, -1.0) / length[:, None]
+    return np.column_stack([normal, -np.sum(normal * points, axis=1)])
 
 
 @numba.njit(**Compiled)  # type: ignore[untyped-decorator]

@@ -27,18 +27,27 @@ SLAB_PLANES = 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Slab:
+class SlabMesh:
     """The mesh of some planes.
 
     Attributes:
         vertices: (vertices, 3) in voxel indices, one on each crossed grid edge.
         faces: (faces, 3) numbers of this slab's vertices, continued into the next slab's.
-        crossed: (vertices, 4) the grid edges, as `mesh_slab` returns them.
-        ends: (vertices, 2) views that miss their ends, as `end_misses` returns them.
     """
 
     vertices: Floats
     faces: NDArray[np.int32]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Slab(SlabMesh):
+    """The mesh of some planes, and what tells later which of it an edit moves.
+
+    Attributes:
+        crossed: (vertices, 4) the grid edges, as `mesh_slab` returns them.
+        ends: (vertices, 2) views that miss their ends, as `end_misses` returns them.
+    """
+
     crossed: NDArray[np.int32]
     ends: NDArray[np.uint16]
 
@@ -191,11 +200,14 @@ def tables_of(voters: Mapping[int, Voter], cells: Mapping[int, EdgeCells]) -> Cr
 
 
 def exact_slab(
-    votes: Votes, threshold: int, layers: tuple[int, int], tables: CrossingTables
+    votes: Votes,
+    threshold: int,
+    layers: tuple[int, int],
+    tables: CrossingTables,
 ) -> Slab:
     """Return one slab's mesh with every vertex where the hull's boundary is."""
     crossed, faces = mesh_slab(votes, threshold, *layers, triangle_table(), edge_tables())
-    vertices = _crossings(crossed, votes, threshold, tables)
+    vertices = exact_vertices(crossed, votes, threshold, tables)
     return Slab(
         vertices=vertices, faces=faces, crossed=crossed, ends=_misses(crossed, votes, tables)
     )
@@ -215,22 +227,32 @@ def renewed_slab(
     kept = kept_crossings(crossed, ends, old.crossed, old.ends, changes)
     vertices = old.vertices[kept] if len(old.vertices) else np.empty((len(crossed), 3))
     sought = np.flatnonzero(kept < 0)
-    vertices[sought] = _crossings(crossed[sought], votes, threshold, tables)
+    vertices[sought] = exact_vertices(crossed[sought], votes, threshold, tables)
     return Slab(vertices=vertices, faces=faces, crossed=crossed, ends=ends)
 
 
-def _crossings(
-    crossed: NDArray[np.int32], votes: Votes, threshold: int, tables: CrossingTables
+def exact_vertices(
+    crossed: NDArray[np.int32],
+    votes: Votes,
+    threshold: int,
+    tables: CrossingTables,
+    low: tuple[int, int, int] = (0, 0, 0),
 ) -> Floats:
+    """Return where the hull's boundary crosses grid edges, (edges, 3) in the grid's voxel indices.
+
+    The votes may be those of a window that begins at voxel `low` and in which edges are counted.
+    """
     vertices: Floats = cross_grid_edges(
         crossed,
         votes,
+        np.array(low),
         threshold,
         tables.to_image,
         tables.points,
         tables.cell_maps,
         tables.starts,
         tables.edges,
+        tables.lines,
     )[0]
     return vertices
 
@@ -239,9 +261,22 @@ def _misses(crossed: NDArray[np.int32], votes: Votes, tables: CrossingTables) ->
     return end_misses(crossed, votes, len(tables.to_image))
 
 
-def joined_surface(slabs: list[Slab], grid: VoxelGrid) -> Surface:
+def joined_surface(slabs: Sequence[SlabMesh], grid: VoxelGrid) -> Surface:
     """Return consecutive slabs as one surface in metres."""
-    bases = np.cumsum([0] + [len(slab.vertices) for slab in slabs]).astype(np.int32)
-    faces = [slab.faces + base for slab, base in zip(slabs, bases[:-1], strict=True)]
-    vertices_m = np.concatenate([slab.vertices for slab in slabs]) * grid.spacing_m + grid.origin_m
-    return Surface(vertices_m=vertices_m, faces=np.concatenate(faces))
+    vertex_ends = np.cumsum([0] + [len(slab.vertices) for slab in slabs])
+    face_ends = np.cumsum([0] + [len(slab.faces) for slab in slabs])
+    vertices_m = np.empty((vertex_ends[-1], 3))
+    faces = np.empty((face_ends[-1], 3), dtype=np.int32)
+
+    def write(number: int) -> None:
+        base = vertex_ends[number]
+        own = vertices_m[base : vertex_ends[number + 1]]
+        np.multiply(slabs[number].vertices, grid.spacing_m, out=own)
+        own += grid.origin_m
+        joined = faces[face_ends[number] : face_ends[number + 1]]
+        np.add(slabs[number].faces, np.int32(base), out=joined)
+
+    in_parallel(write, range(len(slabs)))
+    # Given away read-only, the arrays need not be copied.
+    vertices_m.flags.writeable = faces.flags.writeable = False
+    return Surface(vertices_m=vertices_m, faces=faces)

@@ -6,7 +6,7 @@ process when two Python threads call it.
 """
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from itertools import pairwise
@@ -30,6 +30,13 @@ def thread_count() -> int:
 def in_parallel(work: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
     """Return `work` of each item in order; what one of them raises is raised here."""
     return list(_pool().map(work, items))
+
+
+def one_after_another(
+    work: Callable[[Item], Result], items: Iterable[Item]
+) -> Generator[Result, None, None]:
+    """Yield `work` of each item in order as they are done; to close it drops those not begun."""
+    yield from _pool().map(work, items)
 
 
 def chunks(count: int, *, per_thread: int = 4) -> list[tuple[int, int]]:

@@ -25,6 +25,12 @@ Votes = NDArray[np.uint8] | NDArray[np.uint16]
 MOST_BYTE_VIEWS = 255
 MOST_VIEWS = 65535
 
+MOST_STORED_VOXELS = 2**30
+"""Voxels that one volume in memory may hold: 1024³, 2 GiB of votes and 4 GiB while meshed."""
+
+BYTES_PER_VOXEL = 6
+"""Two of votes, and four of the mesher's copy."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Voter:
@@ -73,7 +79,19 @@ class VoteCounts:
     """
 
     def __init__(self, grid: VoxelGrid) -> None:
-        """Start with no views and no votes on `grid`."""
+        """Start with no views and no votes on `grid`.
+
+        Raises:
+            ValueError: a grid whose votes memory cannot hold.
+        """
+        if grid.voxel_count > MOST_STORED_VOXELS:
+            gibibytes = -(-BYTES_PER_VOXEL * grid.voxel_count // 2**30)
+            raise ValueError(
+                f"A grid of {grid.shape} holds {grid.voxel_count:,} voxels; storing their votes "
+                f"and meshing them would need {gibibytes:,} GiB; at most {MOST_STORED_VOXELS:,} "
+                "fit. Use a larger spacing, or carved_surface of core.hull.hull_only, which "
+                "stores no votes."
+            )
         self.grid = grid
         self._votes: Votes = np.zeros(grid.shape, dtype=np.uint8)
         self._voters: dict[int, Voter] = {}
@@ -211,17 +229,7 @@ class VoteCounts:
 
     def checked_threshold(self, threshold: int | None) -> int:
         """Return the threshold, or the number of views for None, after checking it."""
-        count = self.view_count
-        if count == 0:
-            raise ValueError("No views have voted yet; add at least two views of the target.")
-        if threshold is None:
-            return count
-        if not 1 <= threshold <= count:
-            raise ValueError(
-                f"The vote threshold must lie between 1 and the number of views, "
-                f"{count}; got {threshold}."
-            )
-        return threshold
+        return checked_threshold(threshold, self.view_count)
 
     def _voter(self, number: int) -> Voter:
         if number not in self._voters:
@@ -251,6 +259,24 @@ class VoteCounts:
     ) -> NDArray[np.bool_]:
         self._revision += 1
         return cast(self._votes, parts, axes, limit)
+
+
+def checked_threshold(threshold: int | None, count: int) -> int:
+    """Return the threshold, or the number of views for None.
+
+    Raises:
+        ValueError: no views, or a threshold outside 1 … `count`.
+    """
+    if count == 0:
+        raise ValueError("No views have voted yet; add at least two views of the target.")
+    if threshold is None:
+        return count
+    if not 1 <= threshold <= count:
+        raise ValueError(
+            f"The vote threshold must lie between 1 and the number of views, "
+            f"{count}; got {threshold}."
+        )
+    return threshold
 
 
 def cast(

@@ -292,7 +292,8 @@ def test_frames_without_a_target_do_not_count_as_views(capsys, one_frame, tmp_pa
     [
         (0, "positive metres, got 21.0 and 0.0"),
         ("nan", "positive metres, got 21.0 and nan"),
-        (0.001, "carving would need 51,750 GiB; at most 1,073,741,824 fit. Use a larger spacing"),
+        (0.01, "would need 52 GiB; at most 1,073,741,824 fit. Use a larger spacing"),
+        (0.001, "would need 8,625 GiB; at most 68,719,476,736 can be carved. Use a larger spacing"),
         (1e-12, "Use a larger spacing"),
     ],
 )

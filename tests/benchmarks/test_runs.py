@@ -67,12 +67,16 @@ def test_dragged_outlines_stay_valid() -> None:
         assert not outline_of(view.silhouette).repair
 
 
-def test_growth_fits_powers() -> None:
+def test_growth_fits_powers(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("core.benchmarks.growth.MOST_STORED_VOXELS", 24**3)
     results, curves = run_growth(
-        sizes=((16, 4), (24, 4)), repeats=1, view_counts=(2, 4), segments=(8, 16)
+        sizes=((16, 4), (24, 4), (32, 5)), repeats=1, view_counts=(2, 4), segments=(8, 16)
     )
     assert [curve.of for curve in curves] == ["voxels", "views", "vertices"]
-    assert sum(figure.name.endswith("^") for figure in results.figures) == 9
+    assert sum(figure.name.endswith("^") for figure in results.figures) == 15
+    assert [point.size for point in curves[0].beyond] == ["32³×5"]
+    values = {figure.name: figure.value for figure in results.figures}
+    assert values["32³×5: the mesh itself"] > 1e-6
     assert fitted_exponent([1, 2, 4], [3, 12, 48]) == pytest.approx(2)
 
 

@@ -30,9 +30,9 @@ def test_indices_map_to_metres():
     [
         (0.0, 0.1, "must be positive metres"),
         (1.0, float("nan"), "must be positive metres"),
-        (1000.0, 0.1, "carving would need 5,588 GiB"),
-        (1e6, 0.2, "carving would need .* GiB; at most 1,073,741,824 fit"),  # wraps in 64 bits
-        (1e300, 1.0, "carving would need .* GiB"),
+        (1000.0, 0.1, "one byte each would need 932 GiB"),
+        (1e6, 0.2, "would need .* GiB; at most 68,719,476,736 can be"),  # wraps in 64 bits
+        (1e300, 1.0, "one byte each would need .* GiB"),
         (1e300, 1e-300, "more voxels than any memory"),
     ],
 )
@@ -49,7 +49,7 @@ def test_impossible_grids_are_refused(side_m, spacing_m, message):
         ([0, 0, np.nan], [1, 1, 1], 0.1, "lower corner: 1 of 3 values are NaN"),
         ([0, 0, 0], [1, np.inf, 1], 0.1, "upper corner: 1 of 3 values are NaN or infinite"),
         ([0, 0, 0], [1, 1, -1], 0.1, "must not lie below"),
-        ([0, 0, 0], [1e4, 1e4, 1e4], 1e-3, "carving would need .* GiB"),
+        ([0, 0, 0], [1e4, 1e4, 1e4], 1e-3, "one byte each would need .* GiB"),
         ([0, 0, 0], [1, 1, 1e300], 1e-300, "more voxels than any memory"),
     ],
 )
