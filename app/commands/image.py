@@ -13,7 +13,9 @@ from core.formats.pictures import SUFFIXES, write_picture
 from core.frame import Frame
 from core.radar.backprojection import backprojected_frame
 from core.radar.imaging import ImagingSettings, frame_count, frames
+from core.radar.intervals import divide
 from core.radar.phase_history import PhaseHistory
+from core.radar.refocusing import Autofocus, RefocusSettings, refocused
 
 Method = Literal["polar", "backprojection"]
 
@@ -28,6 +30,10 @@ def image(
     pixels: int = 512,
     pixel_spacing_m: float = 0.06,
     method: Annotated[Method, tyro.conf.arg(metavar="{polar,backprojection}")] = "polar",
+    autofocus: Annotated[
+        Autofocus, tyro.conf.arg(metavar="{none,phase-gradient,minimum-entropy}")
+    ] = "none",
+    align: bool = False,
     picture: OptionalFile = None,
     json: JsonTo = None,
 ) -> None:
@@ -43,6 +49,11 @@ def image(
         method: "polar" divides into coherent intervals and takes wavefronts for planes;
             "backprojection" makes one image of all pulses on their slant plane with spherical
             wavefronts, for a near radar such as the measured Gotcha data.
+        autofocus: what finds the pulses' phases in every coherent interval (all pulses with
+            backprojection); "minimum-entropy" goes on from what "phase-gradient" finds. A shift
+            of the image across cannot be found.
+        align: first align the pulses' ranges, for an unknown translation of the target; each
+            frame then shows the body's middle where the origin belongs.
         picture: also write the brightest frame as a PNG in dB, 60 dB deep.
         json: write a summary as JSON to this file, or to standard output for "-".
     """
@@ -59,7 +70,8 @@ def image(
         shape=(pixels, pixels),
         pixel_spacing_m=pixel_spacing_m,
     )
-    made = _frames(recorded.history, settings, method)
+    refocus = RefocusSettings(autofocus=autofocus, aligns=align)
+    made = _frames(_refocused(recorded.history, settings, method, refocus), settings, method)
     write_pass(out, RecordedPass(history=recorded.history, frames=tuple(made)))
     if picture is not None:
         write_picture(picture, max(made, key=lambda frame: float(frame.amplitude.max())))
@@ -68,6 +80,8 @@ def image(
         {
             "file": str(out),
             "method": method,
+            "autofocus": autofocus,
+            "aligned": align,
             "frames": len(made),
             "shape": [pixels, pixels],
             "spacing_m": pixel_spacing_m,
@@ -75,6 +89,26 @@ def image(
         },
         json,
     )
+
+
+def _refocused(
+    history: PhaseHistory, settings: ImagingSettings, method: Method, refocus: RefocusSettings
+) -> PhaseHistory:
+    if not refocus.is_active:
+        return history
+    spans = [(0, len(history.track))]
+    if method == "polar":
+        intervals = divide(
+            history.track,
+            wavelength_m=history.wavelength_m,
+            cross_range_resolution_m=settings.cross_range_resolution_m,
+            overlap=settings.overlap,
+        )
+        spans = [(interval.start, interval.stop) for interval in intervals]
+    with progress_bars() as report:
+        return refocused(
+            history, spans, refocus, lambda done, total: report("autofocus", done, total)
+        )
 
 
 def _frames(history: PhaseHistory, settings: ImagingSettings, method: Method) -> list[Frame]:
