@@ -12,6 +12,7 @@ from core.hull.sunlight import MOST_PHASE_RAD, carving_frame_view, unfit_to_carv
 from core.hull.surface import EMPTY_SURFACE, Surface
 from core.hull.view import View
 from core.hull.volume import VoteVolume
+from core.hull.votes import check_storable
 from core.measurement.extents import Extent, axis_extents, unobserved_direction
 from core.measurement.lines import LineMeasurement, principal_lines
 from core.silhouettes.extraction import ExtractionSettings, extract_silhouette
@@ -52,6 +53,15 @@ class ReconstructionSettings:
             raise ValueError(
                 f"Tolerated misses are a number of views, 0 or more; got {self.tolerated_misses}."
             )
+        check_storable(self.grid())
+
+    def grid(self) -> VoxelGrid:
+        """Return the grid on which views vote.
+
+        Raises:
+            ValueError: a spacing or side that makes no grid.
+        """
+        return VoxelGrid.cube(side_m=self.side_m, spacing_m=self.spacing_m)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -104,7 +114,7 @@ def reconstruct(
         ValueError: a frame without contrast, or a grid too large.
     """
     settings = settings or ReconstructionSettings()
-    volume = VoteVolume(VoxelGrid.cube(side_m=settings.side_m, spacing_m=settings.spacing_m))
+    volume = VoteVolume(settings.grid())
     views: list[View] = []
     for number, received in enumerate(frames, start=1):
         silhouette = extract_silhouette(received, settings.extraction)

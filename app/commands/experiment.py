@@ -97,7 +97,7 @@ def _physics(
     if out is not None:
         checked_folder(out)
     with progress_bars() as report:
-        results, pictures = run_physics(parts=parts or tuple(PARTS), progress=report)
+        results, pictures = run_physics(parts=parts or PARTS, gotcha=gotcha, progress=report)
     if out is not None:
         write_pictures(pictures, out)
         write_report(out / "report.html", results, pictures)

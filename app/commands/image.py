@@ -7,10 +7,13 @@ from typing import Any
 from app.commands.console import progress_bars
 from app.commands.imaging_options import (
     DEFAULT_FOCUS,
+    DEFAULT_REFOCUS,
     DEFAULT_WEIGHING,
     Divide,
     FocusOptions,
     MethodOption,
+    Refocus,
+    RefocusOptions,
     WeighingOptions,
 )
 from app.commands.options import JsonTo, OptionalFile, OptionalFloat, OutputFile, PassFile
@@ -28,6 +31,7 @@ from core.radar.imaging import (
 )
 from core.radar.intervals import AssessedInterval
 from core.radar.phase_history import PhaseHistory
+from core.radar.refocusing import RefocusSettings, refocused
 from core.radar.unsuitable import UnsuitablePart, unsuitable_parts
 from core.radar.waveform import SPEED_OF_LIGHT_M_PER_S
 
@@ -47,6 +51,7 @@ def image(
     divide: Divide = "auto",
     weighing: WeighingOptions = DEFAULT_WEIGHING,
     focus: FocusOptions = DEFAULT_FOCUS,
+    refocus: RefocusOptions = DEFAULT_REFOCUS,
     picture: OptionalFile = None,
     json: JsonTo = None,
 ) -> None:
@@ -68,6 +73,7 @@ def image(
             unless the method is backprojection.
         weighing: how both axes are weighed.
         focus: which intervals can be sharp.
+        refocus: what is found from the echoes alone before they are imaged.
         picture: also write the brightest frame as a PNG in dB, 60 dB deep.
         json: write a summary as JSON to this file, or to standard output for "-".
     """
@@ -98,7 +104,7 @@ def image(
     if focus.target_radius_m is not None and not divides:
         raise ValueError("--target-radius-m judges intervals; divide into them with --divide yes.")
     assessed = assessed_intervals(history, settings) if divides else ()
-    made = _made(history, settings, assessed)
+    made = _made(_refocused(history, assessed, refocus), settings, assessed)
     parts = unsuitable_parts(history.track, assessed)
     others = [frame for frame in recorded.frames if frame.sensor != "radar"]
     write_pass(out, RecordedPass(history=history, frames=(*made, *others)))
@@ -110,6 +116,8 @@ def image(
             "file": str(out),
             "method": method,
             "window": settings.window.name,
+            "autofocus": refocus.autofocus,
+            "aligned": refocus.align,
             "frames": len(made),
             "shape": [pixels, pixels],
             "spacing_m": row_m,
@@ -138,6 +146,20 @@ def _spacing_m(
         )
     range_cell_m = SPEED_OF_LIGHT_M_PER_S / (2 * history.bandwidth_hz)
     return range_cell_m / oversampling, resolution_m / oversampling
+
+
+def _refocused(
+    history: PhaseHistory, assessed: Sequence[AssessedInterval], refocus: Refocus
+) -> PhaseHistory:
+    settings = RefocusSettings(autofocus=refocus.autofocus, aligns=refocus.align)
+    if not settings.is_active:
+        return history
+    used = [each.used for each in assessed if each.used is not None]
+    spans = [(each.start, each.stop) for each in used] or [(0, len(history.track))]
+    with progress_bars() as report:
+        return refocused(
+            history, spans, settings, lambda done, total: report("autofocus", done, total)
+        )
 
 
 def _made(

@@ -8,6 +8,7 @@ import tyro
 from app.commands.options import OptionalFloat
 from core.radar.focus import FocusCriterion
 from core.radar.imaging import Method
+from core.radar.refocusing import Autofocus
 from core.radar.window import HAMMING, Window, taylor
 
 MethodOption = Annotated[
@@ -50,8 +51,24 @@ class Focus:
     given."""
 
 
+@dataclass(frozen=True)
+class Refocus:
+    """What is found from the echoes alone before they are imaged."""
+
+    autofocus: Annotated[
+        Autofocus, tyro.conf.arg(metavar="{none,phase-gradient,minimum-entropy}")
+    ] = "none"
+    """What finds the pulses' phases in every coherent interval; minimum-entropy goes on from what
+    phase-gradient finds. A shift of the image across cannot be found."""
+    align: bool = False
+    """First align the pulses' ranges, for an unknown translation of the target; each frame then
+    shows the body's middle where the origin belongs."""
+
+
+RefocusOptions = Annotated[Refocus, tyro.conf.arg(name="")]
 WeighingOptions = Annotated[Weighing, tyro.conf.arg(name="")]
 FocusOptions = Annotated[Focus, tyro.conf.arg(name="")]
 
 DEFAULT_WEIGHING = Weighing()
 DEFAULT_FOCUS = Focus()
+DEFAULT_REFOCUS = Refocus()

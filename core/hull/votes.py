@@ -71,6 +71,22 @@ class Voter:
         return pulled_back(outline.points, outline.offsets, weights, self.to_image, self.axis)
 
 
+def check_storable(grid: VoxelGrid) -> None:
+    """Refuse a grid whose votes memory cannot hold.
+
+    Raises:
+        ValueError: more than `MOST_STORED_VOXELS` voxels.
+    """
+    if grid.voxel_count > MOST_STORED_VOXELS:
+        gibibytes = -(-BYTES_PER_VOXEL * grid.voxel_count // 2**30)
+        raise ValueError(
+            f"A grid of {grid.shape} holds {grid.voxel_count:,} voxels; storing their votes "
+            f"and meshing them would need {gibibytes:,} GiB; at most {MOST_STORED_VOXELS:,} "
+            "fit. Use a larger spacing, or carved_surface of core.hull.hull_only, which "
+            "stores no votes."
+        )
+
+
 class VoteCounts:
     """Votes of any number of views on one grid.
 
@@ -84,14 +100,7 @@ class VoteCounts:
         Raises:
             ValueError: a grid whose votes memory cannot hold.
         """
-        if grid.voxel_count > MOST_STORED_VOXELS:
-            gibibytes = -(-BYTES_PER_VOXEL * grid.voxel_count // 2**30)
-            raise ValueError(
-                f"A grid of {grid.shape} holds {grid.voxel_count:,} voxels; storing their votes "
-                f"and meshing them would need {gibibytes:,} GiB; at most {MOST_STORED_VOXELS:,} "
-                "fit. Use a larger spacing, or carved_surface of core.hull.hull_only, which "
-                "stores no votes."
-            )
+        check_storable(grid)
         self.grid = grid
         self._votes: Votes = np.zeros(grid.shape, dtype=np.uint8)
         self._voters: dict[int, Voter] = {}

@@ -60,6 +60,33 @@ def backproject(
     return image.astype(np.complex64).reshape(points.shape[:-1])
 
 
+def pulse_contributions(history: PhaseHistory, points_m: Floats) -> NDArray[np.complex64]:
+    """Return what each pulse alone adds to the image at points (…, 3), (pulses, …).
+
+    Summed over the pulses it is `backproject`'s image; a pulse whose phase is off by φ adds its
+    part turned by φ, so that autofocus can work on these parts without imaging anew.
+    """
+    track = history.track
+    points = np.asarray(points_m, dtype=np.float64)
+    flat = np.ascontiguousarray(points.reshape(-1, 3))
+    profiles, cell_m = _range_profiles(history, HAMMING)
+    range_m = np.full(len(track), np.inf) if track.range_m is None else track.range_m
+    wavenumber = 4 * np.pi / SPEED_OF_LIGHT_M_PER_S * float(history.frequency_hz.mean())
+    directions = np.ascontiguousarray(wave_directions(history, slice(None)))
+    parts = np.empty((len(track), len(flat)), dtype=np.complex64)
+
+    def one_pulse(pulse: int) -> None:
+        only = slice(pulse, pulse + 1)
+        part = np.zeros(len(flat), dtype=np.complex128)
+        direction = directions[only]
+        _accumulate(profiles[only], cell_m, wavenumber, direction, range_m[only], flat, part)
+        parts[pulse] = part
+
+    with ThreadPoolExecutor(WORKERS) as pool:
+        list(pool.map(one_pulse, range(len(track))))
+    return parts.reshape(len(track), *points.shape[:-1])
+
+
 def _range_profiles(history: PhaseHistory, window: Window) -> tuple[NDArray[np.complex64], float]:
     """Return weighted range profiles (pulses, cells) about the origin, and the cell's length.
 

@@ -145,6 +145,15 @@ def whole_interval(history: PhaseHistory) -> CoherentInterval:
     )
 
 
+def whole_frame(history: PhaseHistory, settings: ImagingSettings) -> Frame:
+    """Return one image of all pulses, as `interval_frame` makes it.
+
+    Raises:
+        ValueError: as `interval_frame`.
+    """
+    return interval_frame(history, whole_interval(history), settings)
+
+
 def interval_frame(
     history: PhaseHistory,
     interval: CoherentInterval,

@@ -12,6 +12,7 @@ import trimesh
 from app.command_line import main
 from app.sources import pass_source
 from core.formats.pass_file import RecordedPass, read_pass, write_pass
+from core.radar.autofocus import image_entropy
 from core.radar.intervals import divide
 
 
@@ -57,6 +58,23 @@ def next_interval(history):
         history.track, wavelength_m=history.wavelength_m, cross_range_resolution_m=0.15
     )
     return first.stop + 3
+
+
+def test_echoes_are_focused_on_request(capsys, one_frame, tmp_path):
+    alone, plain = one_frame
+    out = tmp_path / "focused.h5"
+    words = ("--align", "--autofocus", "phase-gradient", "--json", "-")
+    facts = json.loads(run(capsys, "image", alone, out, *words))
+    assert (facts["autofocus"], facts["aligned"], facts["frames"]) == ("phase-gradient", True, 1)
+    focused, before = (read_pass(path).frames[0].amplitude for path in (out, plain))
+    assert image_entropy(focused) == pytest.approx(image_entropy(before), rel=0.03)
+    assert not np.array_equal(focused, before)
+    np.testing.assert_array_equal(read_pass(out).history.samples, read_pass(alone).history.samples)
+
+
+def test_overlapping_intervals_are_not_focused(capsys, echoes, tmp_path):
+    words = ("--overlap", "0.5", "--autofocus", "phase-gradient")
+    assert "must not overlap" in refused(capsys, "image", echoes, tmp_path / "out.h5", *words)
 
 
 COMMANDS = ("serve", "simulate", "import", "image", "reconstruct", "experiment")

@@ -5,7 +5,7 @@ from scipy.ndimage import maximum_filter
 
 from core.formats.gotcha import read_gotcha
 from core.radar.backprojection import backproject
-from core.radar.imaging import ImagingSettings, interval_frame, whole_interval
+from core.radar.imaging import ImagingSettings, whole_frame
 from core.radar.phase_history import PhaseHistory
 from core.radar.waveform import SPEED_OF_LIGHT_M_PER_S
 
@@ -120,7 +120,7 @@ def measured(measured_paths):
     """The measured history and its picture, 102 m wide."""
     history = read_gotcha(measured_paths)
     settings = ImagingSettings(method="backprojection", shape=(512, 512), pixel_spacing_m=0.2)
-    return history, interval_frame(history, whole_interval(history), settings)
+    return history, whole_frame(history, settings)
 
 
 def test_the_measured_scene_is_in_focus(measured):

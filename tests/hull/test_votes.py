@@ -20,7 +20,8 @@ def clockwise(ring):
 def random_view(seed):
     """A star-shaped outline with a hole, seen from a random direction."""
     random = np.random.default_rng(seed)
-    angle = np.sort(random.uniform(0, 2 * np.pi, 17))
+    # No gap so wide that an edge could cut into the hole.
+    angle = 2 * np.pi * (np.arange(17) + random.uniform(0, 1, 17)) / 17
     radius = random.uniform(30, 90, 17)
     centre = random.uniform(230, 280, 2)
     ring = centre + np.column_stack([radius * np.sin(angle), radius * np.cos(angle)])

@@ -2,32 +2,33 @@
 
 from collections.abc import Callable, Mapping
 from functools import partial
+from pathlib import Path
 
+from core.experiments.physics.focusing import focusing_part
 from core.experiments.physics.imaging import imaging_part
 from core.experiments.physics.intervals import intervals_part
+from core.experiments.physics.near_field import near_field_part
 from core.experiments.physics.optics import optics_part
 from core.experiments.physics.part import Part, Progress
 from core.experiments.physics.scattering import scattering_part
 from core.experiments.pictures import Picture
 from core.experiments.results import Results
 
-PARTS: Mapping[str, Callable[[Progress], Part]] = {
-    "scattering": scattering_part,
-    "intervals": intervals_part,
-    "imaging": imaging_part,
-    "optics": optics_part,
-}
+PARTS = ("scattering", "intervals", "imaging", "focusing", "near-field", "optics")
+"""Names of the parts, in the order in which an echo meets them."""
 
 
 def run_physics(
     *,
-    parts: tuple[str, ...] = tuple(PARTS),
+    parts: tuple[str, ...] = PARTS,
+    gotcha: Path | None = None,
     progress: Progress = lambda _stage, _done, _total: None,
 ) -> tuple[Results, tuple[Picture, ...]]:
     """Hold each part of the physics against theory and data, and return figures and pictures.
 
     Args:
         parts: names out of `PARTS`.
+        gotcha: folder of the measured Gotcha history; without it nothing measured is focused.
         progress: told of stage, steps done and steps in all.
 
     Raises:
@@ -38,13 +39,25 @@ def run_physics(
         raise ValueError(
             f'There is no part "{unknown[0]}" of the physics; take {", ".join(PARTS)}.'
         )
-    found = [PARTS[name](partial(_within, progress, name)) for name in parts]
+    runs = _runs(gotcha)
+    found = [runs[name](partial(_within, progress, name)) for name in parts]
     results = Results(
         name="physics",
-        settings={"parts": list(parts)},
+        settings={"parts": list(parts), "measured data": "none" if gotcha is None else "Gotcha"},
         figures=tuple(figure for part in found for figure in part.figures),
     )
     return results, tuple(picture for part in found for picture in part.pictures)
+
+
+def _runs(gotcha: Path | None) -> Mapping[str, Callable[[Progress], Part]]:
+    return {
+        "scattering": scattering_part,
+        "intervals": intervals_part,
+        "imaging": imaging_part,
+        "focusing": partial(focusing_part, gotcha=gotcha),
+        "near-field": near_field_part,
+        "optics": optics_part,
+    }
 
 
 def _within(progress: Progress, part: str, stage: str, done: int, total: int) -> None:

@@ -95,4 +95,4 @@ def test_pictures_are_drawn(found, tmp_path):
         rolled=found[2],
     )
     paths = write_pictures((pass_picture(scene), partner_picture(scene)), tmp_path)
-    assert [path.name for path in paths] == ["optics_pass.png", "optics_partner.png"]
+    assert [path.name for path in paths] == ["optics-pass.png", "optics-partner.png"]
