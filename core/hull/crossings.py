@@ -32,10 +32,11 @@ class CrossingTables:
     Attributes:
         to_image: (views, 3, 4) from homogeneous voxel indices to the homogeneous image.
         points: (points, 2) of all outlines as (row, column).
-        cell_maps: (views, 15) 3 × 4 from homogeneous voxel indices to the row and column of a
-            cell, then the number of cell rows and columns, and the number of the first cell.
-        starts: (cells + 1,) where each cell's edges start in `edges`.
-        edges: which of `points` the edges near each cell start at.
+        cell_maps: (views, 17) 3 × 4 from homogeneous voxel indices to the row and column of a
+            cell, then the number of cell rows and columns, and where the view's part begins in
+            `starts`, in `edges` and in `points`.
+        starts: of each view (cells + 1,) where each cell's edges start in the view's `edges`.
+        edges: which of the view's `points` the edges near each cell start at.
         lines: (points, 3) as in `EdgeCells`.
     """
 
@@ -51,31 +52,31 @@ class CrossingTables:
         cls, maps: Sequence[Floats], outlines: Sequence[Outline], cells: Sequence[EdgeCells]
     ) -> "CrossingTables":
         """Return the tables of views, given each one's map to the image, outline and cells."""
-        first_point = np.cumsum([0] + [len(outline.points) for outline in outlines])
-        first_edge = np.cumsum([0] + [len(cell.edges) for cell in cells])
-        first_cell = np.cumsum([0] + [len(cell.starts) - 1 for cell in cells])
-        starts = [c.starts[:-1] + first for c, first in zip(cells, first_edge[:-1], strict=True)]
-        edges = [c.edges + first for c, first in zip(cells, first_point[:-1], strict=True)]
         return cls(
             to_image=np.array(maps),
             points=np.concatenate([outline.points for outline in outlines]),
-            cell_maps=_cell_maps(maps, cells, first_cell[:-1]),
-            starts=np.concatenate([*starts, [first_edge[-1]]]).astype(np.int32),
-            edges=np.concatenate(edges).astype(np.int32),
+            cell_maps=_cell_maps(np.array(maps), outlines, cells),
+            starts=np.concatenate([cell.starts for cell in cells]),
+            edges=np.concatenate([cell.edges for cell in cells]),
             lines=np.concatenate([cell.lines for cell in cells]),
         )
 
 
-def _cell_maps(
-    maps: Sequence[Floats], cells: Sequence[EdgeCells], first_cell: NDArray[np.int64]
-) -> Floats:
-    """Return the cell maps (views, 15) of maps to the image and of cells."""
-    rows = []
-    for to_image, cell, first in zip(maps, cells, first_cell, strict=True):
-        to_cell = to_image.copy()
-        to_cell[:2] = (to_image[:2] - cell.origin[:2, None] * to_image[2]) * cell.origin[2]
-        rows.append([*to_cell.ravel(), *cell.shape, first])
-    return np.array(rows, dtype=np.float64)
+def _cell_maps(to_image: Floats, outlines: Sequence[Outline], cells: Sequence[EdgeCells]) -> Floats:
+    """Return the cell maps (views, 17) of maps to the image (views, 3, 4) and of cells."""
+    origin = np.array([cell.origin for cell in cells])[:, :, None]
+    to_cell = to_image.copy()
+    to_cell[:, :2] = (to_image[:, :2] - origin[:, :2] * to_image[:, 2:]) * origin[:, 2:]
+    begins = [
+        np.cumsum([0, *lengths])[:-1]
+        for lengths in (
+            [len(cell.starts) for cell in cells],
+            [len(cell.edges) for cell in cells],
+            [len(outline.points) for outline in outlines],
+        )
+    ]
+    shapes = [cell.shape for cell in cells]
+    return np.column_stack([to_cell.reshape(-1, 12), shapes, *begins])
 
 
 @numba.njit(**Compiled)  # type: ignore[untyped-decorator]
@@ -275,8 +276,9 @@ def _collect(
         cell += int(min(max(column, 0.0), columns - 1)) + int(cell_maps[view, 14])
         before, net, projected = count, 0, False
         pr, pc, pw, qr, qc, qw = 0.0, 0.0, 1.0, 0.0, 0.0, 1.0
-        for k in range(starts[cell], starts[cell + 1]):
-            edge = edges[k]
+        first_edge, first_point = int(cell_maps[view, 15]), int(cell_maps[view, 16])
+        for k in range(first_edge + starts[cell], first_edge + starts[cell + 1]):
+            edge = first_point + edges[k]
             if abs(lines[edge, 0] * row + lines[edge, 1] * column + lines[edge, 2]) > 1.0:
                 continue
             if not projected:
