@@ -6,8 +6,9 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from core.hull.casting import cast
 from core.hull.threads import Compiled
-from core.hull.votes import VoteCounts, cast
+from core.hull.votes import VoteCounts
 
 
 def removed_alone_m3(volume: VoteCounts) -> dict[int, float]:

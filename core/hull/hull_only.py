@@ -3,12 +3,13 @@
 Memory holds the mesh and, for each thread, one slab of the region in which the hull can lie.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from contextlib import closing
 
 import numpy as np
 
 from core.geometry.grid import VoxelGrid
+from core.hull.casting import UNWATCHED, Cancelled, Watch
 from core.hull.closed_mesh import Surface
 from core.hull.cube_cases import edge_tables, triangle_table
 from core.hull.mesher import SlabMesh, cells_of, exact_vertices, joined_surface, tables_of
@@ -25,17 +26,11 @@ SLAB_PLANES = 16
 EMPTY_SLAB = SlabMesh(vertices=np.empty((0, 3)), faces=np.empty((0, 3), dtype=np.int32))
 
 
-class Cancelled(Exception):  # noqa: N818 - nothing went wrong
-    """Whoever asked for a long computation does not want it any more."""
-
-
 def carved_surface(
     views: Iterable[View],
     grid: VoxelGrid,
     threshold: int | None = None,
-    *,
-    progress: Callable[[int, int], None] = lambda _done, _total: None,
-    cancel: Callable[[], bool] = lambda: False,
+    watch: Watch = UNWATCHED,
 ) -> Surface:
     """Return the exact surface of the hull with at least `threshold` votes, storing no volume.
 
@@ -45,13 +40,12 @@ def carved_surface(
         views: that vote.
         grid: where; it may hold more voxels than a volume could.
         threshold: votes that a voxel of the hull has at least; by default those of all views.
-        progress: told how many slabs are done, and how many there are.
-        cancel: asked before each slab whether to give up, like `threading.Event.is_set`.
+        watch: is told how many slabs are done, and may cancel before each.
 
     Raises:
         ValueError: no views, a threshold outside 1 … number of views, an outline without area, or
             a camera that stands in the grid.
-        Cancelled: `cancel` said so.
+        Cancelled: `watch` said so.
     """
     voters = in_parallel(lambda view: Voter.of(view, grid), views)
     limit = checked_threshold(threshold, len(voters))
@@ -62,7 +56,7 @@ def carved_surface(
     windows = regions_of_interest(voters, grid, limit, np.array(ends))
 
     def work(window: Window | None) -> SlabMesh:
-        if window is None or cancel():
+        if window is None or watch.cancel():
             return EMPTY_SLAB
         held, low = votes.votes(window), window.low.tolist()
         layers = _layers(window, grid)
@@ -74,11 +68,11 @@ def carved_surface(
     with closing(one_after_another(work, windows)) as made:
         for slab in made:
             slabs.append(slab)
-            if cancel():
+            if watch.cancel():
                 raise Cancelled(
                     f"Carving was cancelled after {len(slabs)} of {len(windows)} slabs."
                 )
-            progress(len(slabs), len(windows))
+            watch.progress(len(slabs), len(windows))
     return joined_surface(slabs, grid)
 
 

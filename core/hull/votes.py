@@ -6,18 +6,16 @@ A vote is the paper's test (eqs. 20 to 24) on the outline itself, never on a ras
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from threading import RLock
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.arrays import Floats
 from core.geometry.grid import VoxelGrid
+from core.hull.casting import UNWATCHED, Watch, cast
 from core.hull.changes import changed_edges
 from core.hull.outline import Outline, outline_of
-from core.hull.pullback import PulledBack, index_to_image, joined, line_axis, pulled_back
-from core.hull.sweep import sweep_planes
-from core.hull.threads import chunks, in_parallel
+from core.hull.pullback import PulledBack, index_to_image, line_axis, pulled_back
 from core.hull.view import View
 
 Votes = NDArray[np.uint8] | NDArray[np.uint16]
@@ -165,17 +163,22 @@ class VoteCounts:
         """
         return self.add_many([view])[0]
 
-    def add_many(self, views: Iterable[View]) -> list[int]:
+    def add_many(self, views: Iterable[View], watch: Watch = UNWATCHED) -> list[int]:
         """Let views vote, all in one sweep, and return their numbers.
+
+        Args:
+            views: that come.
+            watch: is told the progress, and may cancel; the volume is then as it was before.
 
         Raises:
             ValueError: an outline without area, or a camera that stands in the grid.
+            Cancelled: `watch` said so.
         """
         with self._lock:
             voters = [Voter.of(view, self.grid) for view in views]
             self._make_room(self.view_count + len(voters))
             parts = [voter.pulled_back(1) for voter in voters]
-            self._cast(parts, [voter.axis for voter in voters])
+            self._cast(parts, [voter.axis for voter in voters], watch=watch)
             self._changed_at[:] = self._revision
             numbers = list(range(self._next_id, self._next_id + len(voters)))
             self._voters.update(zip(numbers, voters, strict=True))
@@ -264,10 +267,15 @@ class VoteCounts:
             self._votes = self._votes.astype(np.uint16)
 
     def _cast(
-        self, parts: Sequence[PulledBack], axes: Sequence[int], limit: int = 0
+        self,
+        parts: Sequence[PulledBack],
+        axes: Sequence[int],
+        limit: int = 0,
+        watch: Watch = UNWATCHED,
     ) -> NDArray[np.bool_]:
+        flipped = cast(self._votes, parts, axes, limit, watch)
         self._revision += 1
-        return cast(self._votes, parts, axes, limit)
+        return flipped
 
 
 def checked_threshold(threshold: int | None, count: int) -> int:
@@ -286,49 +294,6 @@ def checked_threshold(threshold: int | None, count: int) -> int:
             f"{count}; got {threshold}."
         )
     return threshold
-
-
-def cast(
-    votes: NDArray[Any], parts: Sequence[PulledBack], axes: Sequence[int], limit: int = 0
-) -> NDArray[np.bool_]:
-    """Add the votes of pulled-back polylines, those of each line axis in one sweep.
-
-    Args:
-        votes: (nx, ny, nz) of an unsigned type; changed in place.
-        parts: what to sweep.
-        axes: along which axis each.
-        limit: votes at which a voxel enters or leaves the hull; 0 when nobody wants to know.
-
-    Returns:
-        (nx,) in which planes x a voxel's votes passed the limit, either way.
-    """
-    flipped = np.zeros(votes.shape[0], dtype=np.bool_)
-    for axis in sorted(set(axes)):
-        swept = joined([part for part, of in zip(parts, axes, strict=True) if of == axis])
-        _sweep(votes, axis, swept, limit, flipped)
-    return flipped
-
-
-def _sweep(
-    votes: NDArray[Any], axis: int, swept: PulledBack, limit: int, flipped: NDArray[np.bool_]
-) -> None:
-    weights = swept.weights.astype(votes.dtype)
-
-    def work(planes: tuple[int, int]) -> None:
-        sweep_planes(
-            votes,
-            axis,
-            *planes,
-            swept.place,
-            swept.crossing,
-            swept.flips,
-            swept.offsets,
-            weights,
-            votes.dtype.type(limit),
-            flipped,
-        )
-
-    in_parallel(work, chunks(votes.shape[1 - axis]))
 
 
 def _change(old: Voter, new: Voter) -> list[tuple[PulledBack, int]]:

@@ -6,7 +6,8 @@ import pytest
 from core.benchmarks.measuring import peak_bytes
 from core.benchmarks.workload import degenerate_task, satellite_task
 from core.geometry.grid import VoxelGrid
-from core.hull.hull_only import Cancelled, carved_surface
+from core.hull.casting import Cancelled, Watch
+from core.hull.hull_only import carved_surface
 from core.hull.surface import hull_surface
 from core.hull.volume import VoteVolume
 from core.silhouettes.silhouette import Silhouette
@@ -76,7 +77,9 @@ def test_a_grid_beyond_memory_is_carved_in_little():
 
 def test_progress_counts_all_slabs():
     told = []
-    carved_surface([box_view(0), box_view(1)], GRID, progress=lambda *done: told.append(done))
+    carved_surface(
+        [box_view(0), box_view(1)], GRID, watch=Watch(progress=lambda *done: told.append(done))
+    )
     assert told == [(done, len(told)) for done in range(1, len(told) + 1)]
     assert len(told) == 2
 
@@ -92,7 +95,7 @@ def test_it_can_be_given_up():
     grid = VoxelGrid.cube(side_m=8.0, spacing_m=8.0 / 128)
     views = [box_view(0), box_view(1)]
     with pytest.raises(Cancelled, match=r"after 2 of 8 slabs"):
-        carved_surface(views, grid, progress=stop, cancel=enough.is_set)
+        carved_surface(views, grid, watch=Watch(progress=stop, cancel=enough.is_set))
     assert told == [1]
     assert not carved_surface(views, grid).is_empty
 

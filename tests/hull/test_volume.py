@@ -3,6 +3,7 @@ import threading
 import numpy as np
 import pytest
 
+from core.hull.casting import Cancelled, Watch
 from core.hull.surface import hull_surface
 from core.hull.volume import VoteVolume
 from tests.hull.test_mesher import GRID, HALF_M, box_view, box_volume
@@ -68,3 +69,23 @@ def test_readers_see_whole_changes_while_one_writes():
     assert len(seen) > 2
     allowed = np.array([half[0] for half in halves])
     assert np.abs(np.array(seen)[:, None] - allowed).min(axis=1).max() < 1e-6
+
+
+def test_a_cancelled_vote_leaves_the_volume_as_it_was():
+    volume, _ = box_volume()
+    votes, surface, revision = volume.votes.copy(), volume.surface(), volume.revision
+    asked = iter([False, False, True])
+    with pytest.raises(Cancelled, match="taken back"):
+        volume.add_many([box_view(0, HALF_M / 2)], Watch(cancel=lambda: next(asked, True)))
+    assert np.array_equal(volume.votes, votes)
+    assert volume.revision == revision
+    assert np.array_equal(volume.surface().vertices_m, surface.vertices_m)
+
+
+def test_a_vote_tells_its_progress():
+    told = []
+    volume = VoteVolume(GRID)
+    volume.add_many(
+        [box_view(axis) for axis in range(3)], Watch(progress=lambda *d: told.append(d))
+    )
+    assert told[-1][0] == told[-1][1] > 0
