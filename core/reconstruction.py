@@ -6,13 +6,13 @@ from dataclasses import dataclass, field, replace
 from core.arrays import Floats
 from core.frame import Frame
 from core.geometry.grid import VoxelGrid
-from core.hull.registration import centroid_registered
 from core.hull.shadow import CarvingRule, carving_view
 from core.hull.surface import EMPTY_SURFACE, Surface, hull_surface, mask_surface
 from core.hull.view import View
 from core.hull.votes import VoteVolume
 from core.measurement.extents import Extent, axis_extents, unobserved_direction
 from core.measurement.lines import LineMeasurement, principal_lines
+from core.registration.centroid import centroid_registered
 from core.silhouettes.extraction import ExtractionSettings, extract_silhouette
 from core.silhouettes.silhouette import Silhouette
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from core.experiments.wide import simulated_frames
-from core.hull.registration import centroid_px
 from core.reconstruction import ReconstructionSettings, reconstruct
+from core.registration.centroid import centroid_px
 from core.targets import tiangong_like
 
 SETTINGS = ReconstructionSettings(spacing_m=0.4)
