@@ -13,6 +13,7 @@ from core.hull.votes import VoteVolume
 from core.measurement.extents import Extent, axis_extents, unobserved_direction
 from core.measurement.lines import LineMeasurement, principal_lines
 from core.registration.centroid import centroid_registered
+from core.registration.registration import RegistrationRule, moved, registered
 from core.silhouettes.extraction import ExtractionSettings, extract_silhouette
 from core.silhouettes.silhouette import Silhouette
 
@@ -30,8 +31,9 @@ class ReconstructionSettings:
         rule: "shadow" carves nothing behind the first return, "strict" is the paper's rule.
         tolerated_misses: a voxel stays while at most this many views miss it, so that the vote
             threshold T of eq. 25 is the number of views less this; 0 is the paper's T = I.
-        registers_centroids: whether frames are shifted to a common centroid (section III.D),
-            for frames whose offsets are unknown.
+        registration: of frames whose offsets are unknown (section III.D): "centroid" shifts each
+            silhouette to a common centroid as it comes, "agreement" waits for all frames and
+            finds the offsets on which all outlines agree.
         exact_surface: whether the surface is snapped onto the outlines between the voxels, or
             stands halfway between voxels, which needs no kernels compiled at the first start.
         extraction: how silhouettes are taken from frames.
@@ -41,7 +43,7 @@ class ReconstructionSettings:
     side_m: float = 21.0
     rule: CarvingRule = "shadow"
     tolerated_misses: int = 0
-    registers_centroids: bool = False
+    registration: RegistrationRule = "none"
     exact_surface: bool = True
     extraction: ExtractionSettings = field(default_factory=ExtractionSettings)
 
@@ -59,8 +61,9 @@ class Step:
     Attributes:
         number: how many frames have come, this one included.
         voting: how many of them vote.
-        frame: the frame that came.
+        frame: the frame that came, with its projection as registered.
         silhouette: its outline.
+        offset_px: (2,) rows and columns by which registration moved the frame; None without.
         note: what a person should know of this frame, empty if nothing.
         surface: the hull of all voting frames so far.
         threshold: votes that a voxel of it has at least, 0 while nothing votes.
@@ -74,6 +77,7 @@ class Step:
     voting: int
     frame: Frame
     silhouette: Silhouette
+    offset_px: Floats | None
     note: str
     surface: Surface
     threshold: int
@@ -87,39 +91,90 @@ def reconstruct(
 ) -> Iterator[Step]:
     """Carve a hull frame by frame and yield the state after each.
 
-    A frame in which no target is detected says nothing of where the target is; it is noted and
-    does not vote.
+    A frame in which no target is detected says nothing of where the target is, and one whose
+    silhouette contradicts all others in the registration says something wrong; both are noted
+    and do not vote.
 
     Raises:
-        ValueError: a frame without contrast, or a grid too large.
+        ValueError: a frame without contrast, a grid too large, or too few frames to register.
     """
     settings = settings or ReconstructionSettings()
     volume = VoteVolume(VoxelGrid.cube(side_m=settings.side_m, spacing_m=settings.spacing_m))
     views: list[View] = []
-    for number, received in enumerate(frames, start=1):
-        silhouette = extract_silhouette(received, settings.extraction)
-        frame = received
-        if not silhouette.is_empty:
-            if settings.registers_centroids:
-                frame = _registered(received, silhouette)
-            view = View(silhouette=silhouette, projection=frame.projection)
-            views.append(carving_view(view, settings.rule))
+    for number, outline in enumerate(_registered(_outlined(frames, settings), settings), start=1):
+        if outline.votes:
+            views.append(carving_view(outline.view, settings.rule))
             volume.add(views[-1])
-        yield _step(
-            number=number,
-            frame=frame,
-            silhouette=silhouette,
-            volume=volume,
-            views=views,
-            settings=settings,
+        yield _step(number=number, outline=outline, volume=volume, views=views, settings=settings)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Outline:
+    """A frame's silhouette, and what registration made of it."""
+
+    frame: Frame
+    silhouette: Silhouette
+    offset_px: Floats | None = None
+    contradicts: bool = False
+
+    @property
+    def view(self) -> View:
+        return View(silhouette=self.silhouette, projection=self.frame.projection)
+
+    @property
+    def votes(self) -> bool:
+        return not (self.silhouette.is_empty or self.contradicts)
+
+    def note(self, number: int) -> str:
+        if self.silhouette.is_empty:
+            return f"frame {number} shows no target and does not vote"
+        if self.contradicts:
+            return f"frame {number}'s silhouette contradicts the others and does not vote"
+        return ""
+
+    def moved(self, offset_px: Floats, *, contradicts: bool = False) -> "_Outline":
+        frame = replace(self.frame, projection=moved(self.frame.projection, offset_px))
+        return replace(self, frame=frame, offset_px=offset_px, contradicts=contradicts)
+
+
+def _outlined(frames: Iterable[Frame], settings: ReconstructionSettings) -> Iterator[_Outline]:
+    for frame in frames:
+        yield _Outline(frame=frame, silhouette=extract_silhouette(frame, settings.extraction))
+
+
+def _registered(
+    outlines: Iterable[_Outline], settings: ReconstructionSettings
+) -> Iterator[_Outline]:
+    if settings.registration == "agreement":
+        yield from _agreeing(list(outlines))
+        return
+    for outline in outlines:
+        if settings.registration == "none" or outline.silhouette.is_empty:
+            yield outline
+            continue
+        before = outline.frame.projection
+        after = centroid_registered(outline.silhouette, before)
+        yield outline.moved(after.matrix[:, 3] - before.matrix[:, 3])
+
+
+def _agreeing(outlines: Sequence[_Outline]) -> Iterator[_Outline]:
+    shown = [number for number, outline in enumerate(outlines) if not outline.silhouette.is_empty]
+    registration = registered([outlines[number].view for number in shown])
+    place = {number: index for index, number in enumerate(shown)}
+    for number, outline in enumerate(outlines):
+        if number not in place:
+            yield outline
+            continue
+        index = place[number]
+        yield outline.moved(
+            registration.offsets_px[index], contradicts=bool(registration.is_bad[index])
         )
 
 
 def _step(
     *,
     number: int,
-    frame: Frame,
-    silhouette: Silhouette,
+    outline: _Outline,
     volume: VoteVolume,
     views: Sequence[View],
     settings: ReconstructionSettings,
@@ -128,13 +183,13 @@ def _step(
     surface = _surface(volume, threshold, settings) if views else EMPTY_SURFACE
     extents = () if surface.is_empty else axis_extents(surface, volume.grid, views)
     is_closed = bool(extents) and all(extent.is_bounded for extent in extents)
-    missing = f"frame {number} shows no target and does not vote" if silhouette.is_empty else ""
     return Step(
         number=number,
         voting=len(views),
-        frame=frame,
-        silhouette=silhouette,
-        note=missing,
+        frame=outline.frame,
+        silhouette=outline.silhouette,
+        offset_px=outline.offset_px,
+        note=outline.note(number),
         surface=surface,
         threshold=threshold,
         extents=extents,
@@ -147,7 +202,3 @@ def _surface(volume: VoteVolume, threshold: int, settings: ReconstructionSetting
     if settings.exact_surface:
         return hull_surface(volume, threshold)
     return mask_surface(volume.hull(threshold), volume.grid)
-
-
-def _registered(frame: Frame, silhouette: Silhouette) -> Frame:
-    return replace(frame, projection=centroid_registered(silhouette, frame.projection))

@@ -6,7 +6,6 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import theilslopes
 
 from core.arrays import Floats, frozen
 from core.geometry.projection import Projection
@@ -14,7 +13,7 @@ from core.hull.view import View
 from core.registration.agreement import contour_equations, contours, hull_depths_px
 from core.registration.depth import DistanceMaps
 from core.registration.extents import extent_equations
-from core.registration.solution import solve, solved
+from core.registration.solution import MOST_BAD, solve, solved
 
 RegistrationRule = Literal["none", "centroid", "agreement"]
 
@@ -53,36 +52,6 @@ class Registration:
         """Return the projection of a view moved to where its image stands."""
         return moved(projection, self.offsets_px[view])
 
-    @property
-    def drift_px_per_frame(self) -> Floats:
-        """(2,) median slope of good frames' offsets over the frames' numbers (Theil and Sen)."""
-        good = np.flatnonzero(~self.is_bad)
-        if len(good) < 2:
-            return np.zeros(2)
-        return np.array([theilslopes(self.offsets_px[good, axis], good)[0] for axis in range(2)])
-
-    @property
-    def steps_px(self) -> Floats:
-        """(views,) distance from the frame before, 0 for the first."""
-        steps = np.linalg.norm(np.diff(self.offsets_px, axis=0), axis=1)
-        distances: Floats = np.concatenate([[0.0], steps])
-        return distances
-
-    def sentence(self) -> str:
-        """Return what a person wants to know of it."""
-        row, column = self.drift_px_per_frame
-        widest = np.abs(self.offsets_px).max(axis=0)
-        at = int(np.argmax(self.steps_px))
-        bad = np.flatnonzero(self.is_bad) + 1
-        text = (
-            f"Offsets up to {widest[0]:.1f} px in range and {widest[1]:.1f} px in cross-range, "
-            f"drift {row:+.2f} and {column:+.2f} px a frame, largest jump "
-            f"{self.steps_px[at]:.1f} px before frame {at + 1}"
-        )
-        if len(bad):
-            text += f"; contradicting silhouettes: {', '.join(map(str, bad))}"
-        return text + "."
-
 
 def moved(projection: Projection, offset_px: Floats) -> Projection:
     """Return an affine projection whose image is moved by (rows, columns)."""
@@ -120,7 +89,8 @@ def registered(views: Sequence[View], *, refinements: int = REFINEMENTS) -> Regi
     for number in range(refinements + 1):
         depths = hull_depths_px(views, outlines, maps, offsets_px, is_bad)
         looseness_px = _looseness_px(depths, is_bad)
-        is_bad |= np.array([_sticks_out(depth - looseness_px) for depth in depths])
+        found = is_bad | np.array([_sticks_out(depth - looseness_px) for depth in depths])
+        is_bad = found if np.mean(found) <= MOST_BAD else is_bad
         if number < refinements:
             equations = contour_equations(outlines, depths, offsets_px, looseness_px)
             offsets_px = solve(len(views), extents, is_bad, equations)

@@ -22,6 +22,8 @@ WRONG_PX = 3.0
 """A difference that no noise makes."""
 WRONG_SHARE = 0.35
 """A silhouette is bad when more of its equations are wrong."""
+MOST_BAD = 1 / 3
+"""Share of the silhouettes that the rest may outvote."""
 BAD_WEIGHT = 1e-4
 """Of a bad silhouette's equations: it finds its own place and moves no other."""
 CONVEX_ROUNDS = 15
@@ -63,13 +65,14 @@ class Solution:
 def solved(views: int, extents: ExtentEquations) -> Solution:
     """Return the offsets that the extents want, and the silhouettes that contradict the rest.
 
-    The worst silhouette is taken out and the rest solved again until none is bad.
+    The worst silhouette is taken out and the rest solved again until none is bad, or a third of
+    them are: then nothing tells which are right.
     """
     is_bad = np.zeros(views, dtype=np.bool_)
     offsets_px = solve(views, extents, is_bad)
     while True:
         found = _worst(views, extents, offsets_px, is_bad)
-        if found is None:
+        if found is None or np.mean(is_bad) >= MOST_BAD:
             return Solution(offsets_px=offsets_px, is_bad=is_bad)
         is_bad[found] = True
         offsets_px = solve(views, extents, is_bad)
