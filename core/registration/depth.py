@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
 from core.arrays import Floats
-from core.hull.shadow import carving_view
 from core.hull.threads import InnerLoop
 from core.hull.view import View
 
@@ -57,7 +56,9 @@ class DistanceMaps:
 
 
 def _distance_map(view: View) -> tuple[NDArray[np.float32], Floats]:
-    filled = carving_view(view, "shadow").silhouette.mask()
+    filled = view.silhouette.mask()
+    if view.silhouette.claim == "lit side":
+        filled = np.logical_or.accumulate(filled, axis=0)  # the shadow rule, pixel by pixel
     points = np.concatenate(view.silhouette.rings)
     rows, columns = filled.shape
     top, left = np.floor(points.min(axis=0)).astype(int) - MARGIN_PX

@@ -15,8 +15,9 @@ from scipy.spatial import ConvexHull
 from core.arrays import Floats
 from core.hull.view import View
 
-LEAST_SINE = 0.1
-"""Of the angle between two image planes: nearer ones leave the line where they meet to chance."""
+LEAST_SINE = 0.02
+"""Of the angle between two image planes: at 1° a tenth of a milliradian in the line of sight turns
+the line where they meet by 5 mrad, which moves a tip 8 m off by less than a pixel of 0.06 m."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array, vstack
-from scipy.sparse.linalg import lsmr
+from scipy.sparse.linalg import cg
 
 from core.arrays import Floats
 from core.registration.extents import ExtentEquations
@@ -24,11 +24,13 @@ WRONG_SHARE = 0.35
 """A silhouette is bad when more of its equations are wrong."""
 MOST_BAD = 1 / 3
 """Share of the silhouettes that the rest may outvote."""
-BAD_WEIGHT = 1e-4
+BAD_WEIGHT = 1e-3
 """Of a bad silhouette's equations: it finds its own place and moves no other."""
 CONVEX_ROUNDS = 15
 """Of reweighting, so that the start decides nothing."""
 ROUNDS = 40
+STEP_TOLERANCE = 1e-6
+"""Of each round; the next one makes up for what it leaves."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -105,9 +107,9 @@ def solve(
         [np.where(extents.sign == 0, good, 0.0), np.ones(len(wanted) - len(extents))]
     )
     for number in range(ROUNDS):
-        root = np.sqrt(weight)
-        scaled = csr_array(rows.multiply(root[:, None]))
-        step = lsmr(scaled, root * left, atol=1e-11, btol=1e-11, maxiter=500)[0]
+        # Short vectors, one per unknown: with one per row BLAS starts threads for every product.
+        weighted = csr_array(rows.multiply(weight[:, None])).T
+        step, _ = cg(csr_array(weighted @ rows), weighted @ left, rtol=STEP_TOLERANCE, maxiter=500)
         unknowns += step
         left = wanted - rows @ unknowns
         if number > CONVEX_ROUNDS and np.abs(step[: 2 * views]).max() < 1e-3:

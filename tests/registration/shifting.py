@@ -3,12 +3,9 @@
 from dataclasses import replace
 
 import numpy as np
-import shapely
 
 from core.benchmarks.workload import satellite_views
-from core.hull.shadow import rings_of
 from core.registration.registration import moved
-from core.silhouettes.silhouette import Silhouette
 
 
 def random_offsets(views, *, seed=1, reach_px=20.0):
@@ -42,18 +39,6 @@ def left_px(found_px, true_px, views):
 
 def rms(values):
     return float(np.sqrt(np.mean(values**2)))
-
-
-def cut_in_half(view):
-    shape = shapely.union_all([shapely.Polygon(ring) for ring in view.silhouette.rings])
-    low_row, low, high_row, high = shape.bounds
-    half = shape.intersection(shapely.box(low_row, low, high_row, 0.5 * (low + high)))
-    silhouette = Silhouette(
-        rings=rings_of(half),
-        image_shape=view.silhouette.image_shape,
-        claim=view.silhouette.claim,
-    )
-    return replace(view, silhouette=silhouette)
 
 
 def body_views(count, *, seed=1):

@@ -46,10 +46,14 @@ def test_lit_sides_equal_toward_the_radar_and_bound_behind(seed):
     offsets = random_offsets(views, seed=seed)
     equations = extent_equations(shifted(views, offsets))
     left = equations.left_px(offsets)
-    assert {-1, 0, 1} == set(equations.sign.tolist())
     assert np.abs(left[equations.sign == 0]).max() < 1e-6
     assert (equations.sign * left).min() > -1e-6
-    assert (equations.sign * left).max() > 1
+
+
+def test_where_only_one_side_is_lit_the_other_may_fall_short():
+    equations = extent_equations(list(lit_sides(body_views(6, seed=1))))
+    assert {-1, 0, 1} == set(equations.sign.tolist())
+    assert (equations.sign * equations.left_px(np.zeros((6, 2)))).max() > 1
 
 
 def test_a_perspective_camera_and_an_empty_silhouette_are_refused():

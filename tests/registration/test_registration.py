@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
+from core.experiments.physics.bad_silhouettes import cut_in_half
 from core.registration.registration import registered
 from tests.registration.shifting import (
     body_views,
-    cut_in_half,
     left_px,
     random_offsets,
     rms,

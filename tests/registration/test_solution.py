@@ -2,11 +2,11 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from core.experiments.physics.bad_silhouettes import cut_in_half
 from core.registration.extents import extent_equations
 from core.registration.solution import solved
 from tests.registration.shifting import (
     body_views,
-    cut_in_half,
     left_px,
     random_offsets,
     rms,
