@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 from core.arrays import Floats
 from core.frame import Frame
 from core.geometry.grid import VoxelGrid
-from core.hull.registration import centroid_registered
 from core.hull.shadow import CarvingRule
 from core.hull.sunlight import MOST_PHASE_RAD, carving_frame_view, unfit_to_carve
 from core.hull.surface import EMPTY_SURFACE, Surface
@@ -15,6 +14,8 @@ from core.hull.volume import VoteVolume
 from core.hull.votes import check_storable
 from core.measurement.extents import Extent, axis_extents, unobserved_direction
 from core.measurement.lines import LineMeasurement, principal_lines
+from core.registration.centroid import centroid_registered
+from core.registration.registration import RegistrationRule, moved, registered
 from core.silhouettes.extraction import ExtractionSettings, extract_silhouette
 from core.silhouettes.silhouette import Silhouette
 
@@ -33,8 +34,9 @@ class ReconstructionSettings:
         rule: "shadow" carves nothing behind the first return, "strict" is the paper's rule.
         tolerated_misses: a voxel stays while at most this many views miss it, so that the vote
             threshold T of eq. 25 is the number of views less this; 0 is the paper's T = I.
-        registers_centroids: whether frames are shifted to a common centroid (section III.D),
-            for frames whose offsets are unknown.
+        registration: of frames whose offsets are unknown (section III.D): "centroid" shifts each
+            silhouette to a common centroid as it comes, "agreement" waits for all frames and
+            finds the offsets on which all outlines agree.
         extraction: how silhouettes are taken from frames.
         most_phase_rad: sunlit outlines vote up to this angle at the target between the sun and
             the observer; π lets all vote.
@@ -44,7 +46,7 @@ class ReconstructionSettings:
     side_m: float = 21.0
     rule: CarvingRule = "shadow"
     tolerated_misses: int = 0
-    registers_centroids: bool = False
+    registration: RegistrationRule = "none"
     extraction: ExtractionSettings = field(default_factory=ExtractionSettings)
     most_phase_rad: float = MOST_PHASE_RAD
 
@@ -71,8 +73,9 @@ class Step:
     Attributes:
         number: how many frames have come, this one included.
         voting: how many of them vote.
-        frame: the frame that came.
+        frame: the frame that came, with its projection as registered.
         silhouette: its outline.
+        offset_px: (2,) rows and columns by which registration moved the frame; None without.
         note: what a person should know of this frame, empty if nothing.
         surface: the hull of all voting frames so far.
         threshold: votes that a voxel of it has at least, 0 while nothing votes.
@@ -86,6 +89,7 @@ class Step:
     voting: int
     frame: Frame
     silhouette: Silhouette
+    offset_px: Floats | None
     note: str
     surface: Surface
     threshold: int
@@ -102,8 +106,9 @@ def reconstruct(
 ) -> Iterator[Step]:
     """Carve a hull frame by frame and yield the state after each.
 
-    A frame in which no target is detected says nothing of where the target is, and one against
-    the sun too little; they are noted and do not vote.
+    A frame in which no target is detected says nothing of where the target is, one against the
+    sun too little, and one whose silhouette contradicts all others in the registration something
+    wrong; they are noted and do not vote.
 
     Args:
         frames: in any order.
@@ -111,40 +116,105 @@ def reconstruct(
         surface_of: meshes the hull at the volume's threshold; by default exactly.
 
     Raises:
-        ValueError: a frame without contrast, or a grid too large.
+        ValueError: a frame without contrast, a grid too large, or too few frames to register.
     """
     settings = settings or ReconstructionSettings()
     volume = VoteVolume(settings.grid())
     views: list[View] = []
-    for number, received in enumerate(frames, start=1):
-        silhouette = extract_silhouette(received, settings.extraction)
-        frame = received
-        unfit = unfit_to_carve(received, silhouette, settings.most_phase_rad)
-        if not unfit:
-            if settings.registers_centroids:
-                frame = _registered(received, silhouette)
-            views.append(
-                carving_frame_view(frame, silhouette, settings.rule, depth_m=settings.side_m)
-            )
+    for number, outline in enumerate(_registered(_outlined(frames, settings), settings), start=1):
+        if outline.votes:
+            views.append(outline.carving_view(settings))
             volume.add(views[-1])
             volume.threshold = max(1, len(views) - settings.tolerated_misses)
         yield _step(
             number=number,
-            frame=frame,
-            silhouette=silhouette,
-            note=f"frame {number} {unfit} and does not vote" if unfit else "",
+            outline=outline,
             volume=volume,
             views=views,
             surface=surface_of(volume) if views else EMPTY_SURFACE,
         )
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Outline:
+    """A frame's silhouette, and what registration made of it."""
+
+    frame: Frame
+    silhouette: Silhouette
+    unfit: str = ""
+    offset_px: Floats | None = None
+    contradicts: bool = False
+
+    @property
+    def view(self) -> View:
+        return View(silhouette=self.silhouette, projection=self.frame.projection)
+
+    @property
+    def votes(self) -> bool:
+        return not (self.unfit or self.contradicts)
+
+    def carving_view(self, settings: ReconstructionSettings) -> View:
+        return carving_frame_view(
+            self.frame, self.silhouette, settings.rule, depth_m=settings.side_m
+        )
+
+    def note(self, number: int) -> str:
+        if self.unfit:
+            return f"frame {number} {self.unfit} and does not vote"
+        if self.contradicts:
+            return f"frame {number}'s silhouette contradicts the others and does not vote"
+        return ""
+
+    def moved(self, offset_px: Floats, *, contradicts: bool = False) -> "_Outline":
+        frame = replace(self.frame, projection=moved(self.frame.projection, offset_px))
+        return replace(self, frame=frame, offset_px=offset_px, contradicts=contradicts)
+
+
+def _outlined(frames: Iterable[Frame], settings: ReconstructionSettings) -> Iterator[_Outline]:
+    for frame in frames:
+        silhouette = extract_silhouette(frame, settings.extraction)
+        unfit = unfit_to_carve(frame, silhouette, settings.most_phase_rad)
+        yield _Outline(frame=frame, silhouette=silhouette, unfit=unfit)
+
+
+def _registered(
+    outlines: Iterable[_Outline], settings: ReconstructionSettings
+) -> Iterator[_Outline]:
+    if settings.registration == "agreement":
+        yield from _agreeing(list(outlines))
+        return
+    for outline in outlines:
+        if settings.registration == "none" or outline.unfit:
+            yield outline
+            continue
+        before = outline.frame.projection
+        after = centroid_registered(outline.silhouette, before)
+        yield outline.moved(after.matrix[:, 3] - before.matrix[:, 3])
+
+
+def _agreeing(outlines: Sequence[_Outline]) -> Iterator[_Outline]:
+    # A telescope's stars place its frames; only the radar's have unknown offsets.
+    shown = [
+        number
+        for number, outline in enumerate(outlines)
+        if outline.frame.sensor == "radar" and not outline.unfit
+    ]
+    registration = registered([outlines[number].view for number in shown])
+    place = {number: index for index, number in enumerate(shown)}
+    for number, outline in enumerate(outlines):
+        if number not in place:
+            yield outline
+            continue
+        index = place[number]
+        yield outline.moved(
+            registration.offsets_px[index], contradicts=bool(registration.is_bad[index])
+        )
+
+
 def _step(
     *,
     number: int,
-    frame: Frame,
-    silhouette: Silhouette,
-    note: str,
+    outline: _Outline,
     volume: VoteVolume,
     views: Sequence[View],
     surface: Surface,
@@ -154,16 +224,13 @@ def _step(
     return Step(
         number=number,
         voting=len(views),
-        frame=frame,
-        silhouette=silhouette,
-        note=note,
+        frame=outline.frame,
+        silhouette=outline.silhouette,
+        offset_px=outline.offset_px,
+        note=outline.note(number),
         surface=surface,
         threshold=volume.threshold or 0,
         extents=extents,
         lines=principal_lines(surface, LINE_NAMES) if is_closed else (),
         unobserved=unobserved_direction([view.projection for view in views]) if views else None,
     )
-
-
-def _registered(frame: Frame, silhouette: Silhouette) -> Frame:
-    return replace(frame, projection=centroid_registered(silhouette, frame.projection))

@@ -9,6 +9,7 @@ import tyro
 
 from core.hull.shadow import CarvingRule
 from core.reconstruction import ReconstructionSettings
+from core.registration.registration import RegistrationRule
 
 _UNSET = ""
 """What the help shows of an option that is not set: its sentence says what happens then."""
@@ -38,8 +39,10 @@ class Carving:
     """shadow carves nothing behind a frame's first return; strict is the paper's rule."""
     tolerated_misses: int = 0
     """Views that may miss a voxel of the hull; 0 lets every view carve."""
-    register_centroids: bool = False
-    """Shift silhouettes to a common centroid (the paper's III.D), for unknown offsets."""
+    register: RegistrationRule = "none"
+    """For frames with unknown offsets in range and cross-range. centroid shifts each silhouette to
+    a common centroid (the paper's III.D, biased for lit sides); agreement finds the offsets on
+    which all outlines agree, once all frames are there."""
     spacing_m: float = 0.15
     """Voxel spacing, metres."""
     side_m: float = 21.0
@@ -61,7 +64,7 @@ class Carving:
             side_m=self.side_m,
             rule=self.rule,
             tolerated_misses=self.tolerated_misses,
-            registers_centroids=self.register_centroids,
+            registration=self.register,
         )
 
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 import tyro
 
 from app.commands.console import progress_bars, show_table
@@ -19,6 +20,7 @@ from core.formats.surfaces import SUFFIXES, write_surface
 from core.hull.warm_up import compile_kernels
 from core.reconstruction import ReconstructionSettings, Step
 from core.reconstruction import reconstruct as reconstruct_frames
+from core.registration.wander import Wander
 
 
 def reconstruct(
@@ -41,31 +43,40 @@ def reconstruct(
     checked_json(json)
     if out is not None:
         checked_output(out, SUFFIXES)
-    last, notes = _carved(pass_sources(pass_files), settings)
+    last, notes, wander = _carved(pass_sources(pass_files), settings)
     for note in notes:
         print(f"radarhull: note: {note}.", file=sys.stderr)
     _check_hull(last)
     if out is not None:
         write_surface(out, last.surface)
     if json is not None:
-        write_json(json, _facts(last, settings, pass_files, notes))
+        write_json(json, _facts(last, settings, pass_files, notes, wander))
     if json != STANDARD_OUTPUT:
         show_table(_extents_table(last))
+        if settings.registration != "none":
+            print(wander.sentence())
 
 
 def _carved(
     sources: Sequence[Source], settings: ReconstructionSettings
-) -> tuple[Step, tuple[str, ...]]:
-    """Return the last step, and what every frame left to note."""
+) -> tuple[Step, tuple[str, ...], Wander]:
+    """Return the last step, what every frame left to note, and the offsets of those that vote."""
     total = sum(source.expected_frames or 0 for source in sources)
     every_frame = (frame for source in sources for frame in source.frames())
     notes: list[str] = []
+    offsets: dict[int, Floats] = {}
     with progress_bars() as report:
         compile_kernels(report)
         for step in reconstruct_frames(every_frame, settings):
             report("frames", step.number, max(total, step.number))
             notes += [step.note] if step.note else []
-    return step, tuple(notes)
+            if step.offset_px is not None and not step.note:
+                offsets[step.number] = step.offset_px
+    wander = Wander(
+        frame_numbers=np.array(list(offsets), dtype=np.int64),
+        offsets_px=np.array(list(offsets.values())).reshape(-1, 2),
+    )
+    return step, tuple(notes), wander
 
 
 def _check_hull(step: Step) -> None:
@@ -82,7 +93,11 @@ def _check_hull(step: Step) -> None:
 
 
 def _facts(
-    step: Step, settings: ReconstructionSettings, files: Sequence[Path], notes: Sequence[str]
+    step: Step,
+    settings: ReconstructionSettings,
+    files: Sequence[Path],
+    notes: Sequence[str],
+    wander: Wander,
 ) -> dict[str, Any]:
     return {
         "passes": [path.name for path in files],
@@ -105,7 +120,22 @@ def _facts(
             {"name": line.name, "length_m": line.length_m, "direction": line.direction.tolist()}
             for line in step.lines
         ],
+        "registration": _registration_facts(settings, wander),
         "notes": list(notes),
+    }
+
+
+def _registration_facts(settings: ReconstructionSettings, wander: Wander) -> dict[str, Any] | None:
+    if settings.registration == "none":
+        return None
+    columns = zip(wander.frame_numbers, wander.offsets_px, wander.jumps_px, strict=True)
+    return {
+        "rule": settings.registration,
+        "drift_px_per_frame": wander.drift_px_per_frame.tolist(),
+        "frames": [
+            {"frame": int(frame), "offset_px": offset.tolist(), "jump_px": float(jump)}
+            for frame, offset, jump in columns
+        ],
     }
 
 

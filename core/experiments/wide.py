@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from core.arrays import Floats
 from core.experiments.results import Figure, Results, Table
 from core.frame import Frame
 from core.geometry.grid import VoxelGrid
@@ -18,6 +19,7 @@ from core.parallel import in_order
 from core.radar.echoes import simulate_echoes
 from core.radar.imaging import ImagingSettings, frames
 from core.radar.scatterers import surface_scatterers
+from core.radar.tracking_error import displaced
 from core.radar.waveform import Waveform
 from core.silhouettes.extraction import extract_silhouette
 from core.targets import LineFeature, Target, tiangong_like
@@ -100,6 +102,7 @@ def simulated_frames(
     scatterers: int,
     signal_to_noise_db: float,
     random: np.random.Generator,
+    tracking_error_m: Floats | None = None,
     progress: Progress = lambda _stage, _done, _total: None,
 ) -> list[Frame]:
     """Return radar frames of a target from random directions, imaged from simulated echoes.
@@ -110,6 +113,8 @@ def simulated_frames(
         scatterers: points on the surface.
         signal_to_noise_db: as in `simulate_echoes`.
         random: for directions, scatterers and noise.
+        tracking_error_m: (views, 2) how far in range and cross-range every view's echoes are off
+            what its projection says.
         progress: told of stage, steps done and steps in all.
     """
     waveform = Waveform()
@@ -124,8 +129,10 @@ def simulated_frames(
     )
     bursts = track.bursts()
 
-    def frame(work: tuple[tuple[int, int], np.random.Generator]) -> Frame:
-        (start, stop), of_noise = work
+    errors_m = np.zeros((len(bursts), 2)) if tracking_error_m is None else tracking_error_m
+
+    def frame(work: tuple[tuple[int, int], Floats, np.random.Generator]) -> Frame:
+        (start, stop), (range_m, cross_range_m), of_noise = work
         history = simulate_echoes(
             points,
             track.part(start, stop),
@@ -133,11 +140,14 @@ def simulated_frames(
             signal_to_noise_db=signal_to_noise_db,
             random=of_noise,
         )
+        if range_m or cross_range_m:
+            history = displaced(history, range_m=range_m, cross_range_m=cross_range_m)
         (image,) = frames(history, imaging)
         return image
 
     images: list[Frame] = []
-    for image in in_order(frame, zip(bursts, random.spawn(len(bursts)), strict=True)):
+    works = zip(bursts, errors_m, random.spawn(len(bursts)), strict=True)
+    for image in in_order(frame, works):
         images.append(image)
         progress("echoes and images", len(images), views)
     return images

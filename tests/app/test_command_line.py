@@ -174,7 +174,15 @@ def test_echoes_become_frames_become_a_hull(capsys, echoes, tmp_path):
     extents = trimesh.load(hull, force="mesh").extents
     for extent, side_m in zip(facts["extents"], extents, strict=True):
         assert extent["value_m"] in (None, pytest.approx(side_m))
+    assert facts["registration"] is None
     assert "not bounded" in run(capsys, "reconstruct", framed, "--spacing-m", 0.5)
+    register = ("--spacing-m", 0.5, "--register", "centroid")
+    assert "px a frame, and jump by" in run(capsys, "reconstruct", framed, *register)
+    shifts = json.loads(run(capsys, "reconstruct", framed, *register, "--json", "-"))[
+        "registration"
+    ]
+    assert shifts["rule"] == "centroid"
+    assert [each["frame"] for each in shifts["frames"]] == list(range(1, count + 1))
 
 
 def test_measured_echoes_are_imported_and_focused(capsys, shared_data, tmp_path):

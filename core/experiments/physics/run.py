@@ -10,11 +10,12 @@ from core.experiments.physics.intervals import intervals_part
 from core.experiments.physics.near_field import near_field_part
 from core.experiments.physics.optics import optics_part
 from core.experiments.physics.part import Part, Progress
+from core.experiments.physics.registration import registration_part
 from core.experiments.physics.scattering import scattering_part
 from core.experiments.pictures import Picture
 from core.experiments.results import Results
 
-PARTS = ("scattering", "intervals", "imaging", "focusing", "near-field", "optics")
+PARTS = ("scattering", "intervals", "imaging", "focusing", "near-field", "registration", "optics")
 """Names of the parts, in the order in which an echo meets them."""
 
 
@@ -56,6 +57,7 @@ def _runs(gotcha: Path | None) -> Mapping[str, Callable[[Progress], Part]]:
         "imaging": imaging_part,
         "focusing": partial(focusing_part, gotcha=gotcha),
         "near-field": near_field_part,
+        "registration": registration_part,
         "optics": optics_part,
     }
 

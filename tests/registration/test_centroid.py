@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from core.geometry.projection import range_doppler_projection
-from core.hull.registration import centroid_px, centroid_registered
+from core.registration.centroid import centroid_px, centroid_registered
 from core.silhouettes.contours import traced_rings
 from core.silhouettes.silhouette import Silhouette
 

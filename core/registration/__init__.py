@@ -1,0 +1,1 @@
+"""Registration: the unknown offset of every frame in range and cross-range (section III.D)."""
