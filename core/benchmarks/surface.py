@@ -7,8 +7,9 @@ from functools import partial
 import numpy as np
 
 from core.arrays import Floats
+from core.benchmarks.distances import distances_m, sampled_points
 from core.benchmarks.measuring import Progress, Run, machine, measured
-from core.benchmarks.truth import distances_m, sampled_points, true_hull
+from core.benchmarks.truth import true_hull
 from core.benchmarks.workload import (
     ATTITUDE,
     BODY_LENGTH_M,

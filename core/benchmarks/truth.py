@@ -8,9 +8,7 @@ from typing import Any
 
 import manifold3d
 import numpy as np
-import trimesh
 
-from core.arrays import Floats
 from core.hull.closed_mesh import Surface
 from core.hull.view import View
 
@@ -29,22 +27,6 @@ def true_hull(views: tuple[View, ...]) -> Surface:
         vertices_m=np.asarray(mesh.vert_properties)[:, :3],
         faces=np.asarray(mesh.tri_verts).astype(np.int32),
     )
-
-
-def distances_m(points_m: Floats, surface: Surface) -> Floats:
-    """Return the distance (points,) of each point to the nearest point of a surface."""
-    mesh = trimesh.Trimesh(surface.vertices_m, surface.faces, process=False)
-    _, distance, _ = trimesh.proximity.closest_point(mesh, points_m)
-    found: Floats = np.asarray(distance)
-    return found
-
-
-def sampled_points(surface: Surface, count: int, seed: int = 1) -> Floats:
-    """Return points (count, 3) spread evenly over a surface."""
-    mesh = trimesh.Trimesh(surface.vertices_m, surface.faces, process=False)
-    points, _ = trimesh.sample.sample_surface(mesh, count, seed=seed)
-    found: Floats = np.asarray(points)
-    return found
 
 
 def _common(one: Any, other: Any) -> Any:

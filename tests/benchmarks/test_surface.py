@@ -3,8 +3,9 @@ import pytest
 
 pytest.importorskip("manifold3d")
 
+from core.benchmarks.distances import distances_m, sampled_points
 from core.benchmarks.surface import run_surface
-from core.benchmarks.truth import distances_m, sampled_points, true_hull
+from core.benchmarks.truth import true_hull
 from core.benchmarks.workload import ATTITUDE, PANEL_SPAN_M, satellite, satellite_views
 
 

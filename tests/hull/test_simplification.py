@@ -4,7 +4,7 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.benchmarks.truth import distances_m
+from core.benchmarks.distances import distances_m
 from core.hull.closed_mesh import Surface
 from core.hull.simplification import simplified
 from core.hull.surface import EMPTY_SURFACE, hull_surface
