@@ -42,9 +42,10 @@ def test_plays_every_frame_and_keeps_the_latest_hull(start, wait_for) -> None:
     wait_for(lambda: stream.snapshot.status == "finished")
     snapshot = stream.snapshot
     assert [record.number for record in snapshot.records] == [1, 2, 3, 4]
-    assert snapshot.shown is snapshot.hull is snapshot.records[-1]
+    assert snapshot.shown is snapshot.records[-1]
+    assert snapshot.hull is snapshot.records[-1].hull
     assert len(snapshot.surface.vertices_m) == snapshot.hull.vertex_count
-    volumes = [record.volume_m3 for record in snapshot.records]
+    volumes = [record.hull.volume_m3 for record in snapshot.records]
     assert volumes == sorted(volumes, reverse=True)
 
 
@@ -59,7 +60,7 @@ def test_a_hull_of_many_faces_is_drawn_lightly_once_no_frame_comes(
     snapshot = stream.snapshot
     assert len(snapshot.drawn.faces) <= 1000 < len(snapshot.surface.faces)
     assert snapshot.hull.face_count == len(snapshot.surface.faces)
-    facts = state_facts(snapshot, stream.source, 24.0)["light"]
+    facts = state_facts(snapshot, stream.source)["light"]
     assert facts == {"faces": len(snapshot.drawn.faces), "error_m": snapshot.light.error_m}
     assert 0 < facts["error_m"] < SETTINGS.spacing_m
     assert snapshot.status == "finished"
@@ -71,7 +72,7 @@ def test_a_hull_of_few_faces_is_drawn_as_it_is(start, wait_for) -> None:
     wait_for(lambda: stream.snapshot.status == "finished")
     assert stream.snapshot.light is None
     assert stream.snapshot.drawn is stream.snapshot.surface
-    assert state_facts(stream.snapshot, stream.source, 24.0)["light"] is None
+    assert state_facts(stream.snapshot, stream.source)["light"] is None
 
 
 def test_observers_see_each_frame_once_and_in_order(start, wait_for) -> None:
@@ -103,7 +104,7 @@ def test_an_earlier_frame_is_shown_while_the_hull_stays_the_latest(start, wait_f
     wait_for(lambda: stream.snapshot.status == "finished")
     stream.choose(2)
     assert stream.snapshot.shown.number == 2
-    assert stream.snapshot.hull.number == 4
+    assert stream.snapshot.hull.frames == 4
     stream.choose(4)
     assert stream.snapshot.chosen is None
 
@@ -131,7 +132,7 @@ def test_restart_asks_the_source_for_nothing_again(start, wait_for) -> None:
     wait_for(lambda: stream.snapshot.run == 2 and stream.snapshot.status == "finished")
     assert len(asked) == 3
     again = stream.snapshot
-    assert [r.volume_m3 for r in again.records] == [r.volume_m3 for r in first.records]
+    assert [r.hull.volume_m3 for r in again.records] == [r.hull.volume_m3 for r in first.records]
 
 
 def test_restart_in_the_middle_goes_on_with_the_rest(start, wait_for) -> None:
