@@ -19,6 +19,9 @@ from core.registration.registration import RegistrationRule, moved, registered
 from core.silhouettes.extraction import ExtractionSettings, extract_silhouette
 from core.silhouettes.silhouette import Silhouette
 
+CONTRADICTS = "has a silhouette that contradicts the others"
+"""Why a frame that registration by agreement found to be wrong does not vote."""
+
 LINE_NAMES = ("span", "length", "diameter")
 """Of the principal lines, longest first, as they are called on a laboratory with solar panels."""
 
@@ -121,27 +124,107 @@ def reconstruct(
     settings = settings or ReconstructionSettings()
     volume = VoteVolume(settings.grid())
     views: list[View] = []
-    for number, outline in enumerate(_registered(_outlined(frames, settings), settings), start=1):
-        if outline.votes:
-            views.append(outline.carving_view(settings))
-            volume.add(views[-1])
-            volume.threshold = max(1, len(views) - settings.tolerated_misses)
-        yield _step(
+    for number, outline in enumerate(_outlines(frames, settings), start=1):
+        ballot = outline.ballot(settings)
+        if ballot.view is not None:
+            views.append(ballot.view)
+            volume.add(ballot.view)
+            volume.threshold = vote_threshold(len(views), settings)
+        surface = surface_of(volume) if views else EMPTY_SURFACE
+        measures = measures_of(surface, volume.grid, views)
+        yield Step(
             number=number,
-            outline=outline,
-            volume=volume,
-            views=views,
-            surface=surface_of(volume) if views else EMPTY_SURFACE,
+            voting=len(views),
+            frame=ballot.frame,
+            silhouette=outline.silhouette,
+            offset_px=outline.offset_px if ballot.offset_px is None else ballot.offset_px,
+            note=not_voting_note(number, ballot.unfit),
+            surface=surface,
+            threshold=volume.threshold or 0,
+            extents=measures.extents,
+            lines=measures.lines,
+            unobserved=measures.unobserved,
         )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Ballot:
+    """What a frame with a silhouette says of where the target is.
+
+    Attributes:
+        frame: registered if the settings ask for it.
+        view: that votes, None for a silhouette that must not.
+        unfit: why it must not, in a clause for people to read; empty if it votes.
+        offset_px: (2,) row and column by which registration by centroid moved it, or None.
+    """
+
+    frame: Frame
+    view: View | None
+    unfit: str = ""
+    offset_px: Floats | None = None
+
+
+def ballot_of(received: Frame, silhouette: Silhouette, settings: ReconstructionSettings) -> Ballot:
+    """Return how a frame votes by a silhouette drawn in it.
+
+    Raises:
+        ValueError: a picture against the sun, or one that registration by centroid does not suit.
+    """
+    unfit = unfit_to_carve(received, silhouette, settings.most_phase_rad)
+    if unfit:
+        return Ballot(frame=received, view=None, unfit=unfit)
+    frame, offset_px = received, None
+    if settings.registration == "centroid":
+        projection = centroid_registered(silhouette, received.projection)
+        offset_px = projection.matrix[:, 3] - received.projection.matrix[:, 3]
+        frame = replace(received, projection=projection)
+    view = carving_frame_view(frame, silhouette, settings.rule, depth_m=settings.side_m)
+    return Ballot(frame=frame, view=view, offset_px=offset_px)
+
+
+def vote_threshold(voting: int, settings: ReconstructionSettings) -> int | None:
+    """Return the votes that a voxel of the hull has at least (T of eq. 25), None without views."""
+    return max(1, voting - settings.tolerated_misses) if voting else None
+
+
+def not_voting_note(number: int, why: str) -> str:
+    """Return the note of a frame that does not vote, empty for one that does."""
+    return f"frame {number} {why} and does not vote" if why else ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Measures:
+    """What is measured on a hull.
+
+    Attributes:
+        extents: along x, y, z; empty when the hull is.
+        lines: span, length and diameter along the hull's own principal axes; empty while any
+            extent is open or the hull is empty.
+        unobserved: (3,) direction that no view constrains, or None.
+    """
+
+    extents: tuple[Extent, ...]
+    lines: tuple[LineMeasurement, ...]
+    unobserved: Floats | None
+
+
+def measures_of(surface: Surface, grid: VoxelGrid, views: Sequence[View]) -> Measures:
+    """Measure the hull that views carved on a grid."""
+    extents = () if surface.is_empty else axis_extents(surface, grid, views)
+    is_closed = bool(extents) and all(extent.is_bounded for extent in extents)
+    return Measures(
+        extents=extents,
+        lines=principal_lines(surface, LINE_NAMES) if is_closed else (),
+        unobserved=unobserved_direction([view.projection for view in views]) if views else None,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Outline:
-    """A frame's silhouette, and what registration made of it."""
+    """A frame's silhouette, and what registration by agreement made of it."""
 
     frame: Frame
     silhouette: Silhouette
-    unfit: str = ""
     offset_px: Floats | None = None
     contradicts: bool = False
 
@@ -149,55 +232,33 @@ class _Outline:
     def view(self) -> View:
         return View(silhouette=self.silhouette, projection=self.frame.projection)
 
-    @property
-    def votes(self) -> bool:
-        return not (self.unfit or self.contradicts)
-
-    def carving_view(self, settings: ReconstructionSettings) -> View:
-        return carving_frame_view(
-            self.frame, self.silhouette, settings.rule, depth_m=settings.side_m
-        )
-
-    def note(self, number: int) -> str:
-        if self.unfit:
-            return f"frame {number} {self.unfit} and does not vote"
+    def ballot(self, settings: ReconstructionSettings) -> Ballot:
         if self.contradicts:
-            return f"frame {number}'s silhouette contradicts the others and does not vote"
-        return ""
+            return Ballot(frame=self.frame, view=None, unfit=CONTRADICTS)
+        return ballot_of(self.frame, self.silhouette, settings)
 
-    def moved(self, offset_px: Floats, *, contradicts: bool = False) -> "_Outline":
+    def moved(self, offset_px: Floats, *, contradicts: bool) -> "_Outline":
         frame = replace(self.frame, projection=moved(self.frame.projection, offset_px))
         return replace(self, frame=frame, offset_px=offset_px, contradicts=contradicts)
 
 
-def _outlined(frames: Iterable[Frame], settings: ReconstructionSettings) -> Iterator[_Outline]:
-    for frame in frames:
-        silhouette = extract_silhouette(frame, settings.extraction)
-        unfit = unfit_to_carve(frame, silhouette, settings.most_phase_rad)
-        yield _Outline(frame=frame, silhouette=silhouette, unfit=unfit)
-
-
-def _registered(
-    outlines: Iterable[_Outline], settings: ReconstructionSettings
-) -> Iterator[_Outline]:
+def _outlines(frames: Iterable[Frame], settings: ReconstructionSettings) -> Iterator[_Outline]:
+    outlines = (
+        _Outline(frame=frame, silhouette=extract_silhouette(frame, settings.extraction))
+        for frame in frames
+    )
     if settings.registration == "agreement":
-        yield from _agreeing(list(outlines))
-        return
-    for outline in outlines:
-        if settings.registration == "none" or outline.unfit:
-            yield outline
-            continue
-        before = outline.frame.projection
-        after = centroid_registered(outline.silhouette, before)
-        yield outline.moved(after.matrix[:, 3] - before.matrix[:, 3])
+        yield from _agreeing(list(outlines), settings)
+    else:
+        yield from outlines
 
 
-def _agreeing(outlines: Sequence[_Outline]) -> Iterator[_Outline]:
+def _agreeing(outlines: Sequence[_Outline], settings: ReconstructionSettings) -> Iterator[_Outline]:
     # A telescope's stars place its frames; only the radar's have unknown offsets.
     shown = [
         number
         for number, outline in enumerate(outlines)
-        if outline.frame.sensor == "radar" and not outline.unfit
+        if outline.frame.sensor == "radar" and outline.ballot(settings).view is not None
     ]
     registration = registered([outlines[number].view for number in shown])
     place = {number: index for index, number in enumerate(shown)}
@@ -209,28 +270,3 @@ def _agreeing(outlines: Sequence[_Outline]) -> Iterator[_Outline]:
         yield outline.moved(
             registration.offsets_px[index], contradicts=bool(registration.is_bad[index])
         )
-
-
-def _step(
-    *,
-    number: int,
-    outline: _Outline,
-    volume: VoteVolume,
-    views: Sequence[View],
-    surface: Surface,
-) -> Step:
-    extents = () if surface.is_empty else axis_extents(surface, volume.grid, views)
-    is_closed = bool(extents) and all(extent.is_bounded for extent in extents)
-    return Step(
-        number=number,
-        voting=len(views),
-        frame=outline.frame,
-        silhouette=outline.silhouette,
-        offset_px=outline.offset_px,
-        note=outline.note(number),
-        surface=surface,
-        threshold=volume.threshold or 0,
-        extents=extents,
-        lines=principal_lines(surface, LINE_NAMES) if is_closed else (),
-        unobserved=unobserved_direction([view.projection for view in views]) if views else None,
-    )

@@ -80,7 +80,7 @@ def test_a_silhouette_without_agreement_is_noted_and_does_not_vote(monkeypatch, 
     )
     monkeypatch.setattr("core.reconstruction.registered", lambda _views: found)
     steps = list(reconstruct(frames, replace(SETTINGS, registration="agreement")))
-    assert steps[1].note == "frame 2's silhouette contradicts the others and does not vote"
+    assert steps[1].note == "frame 2 has a silhouette that contradicts the others and does not vote"
     assert [step.voting for step in steps] == [1, 1, 2, 3]
 
 

@@ -34,5 +34,11 @@ def serve(
         open: also open the page in the browser.
         carving: how the hull is carved.
     """
+    settings = carving.settings()
+    if settings.registration == "agreement":
+        raise ValueError(
+            "Registration by agreement waits for all frames, and the workstation shows each as it "
+            "comes; use radarhull reconstruct --register agreement, or --register centroid here."
+        )
     source = demo_source() if pass_file is None else pass_sources([pass_file])[0]
-    serve_source(source, port=port, open_browser=open, settings=carving.settings())
+    serve_source(source, port=port, open_browser=open, settings=settings)

@@ -438,3 +438,7 @@ def test_no_telescope_sees_a_target_in_the_earths_shadow(tmp_path, capsys):
     assert ended.value.code == 2
     assert "Earth's shadow" in capsys.readouterr().err
     assert not (tmp_path / "night.h5").exists()
+
+
+def test_the_workstation_does_not_wait_for_all_frames(capsys):
+    assert "waits for all frames" in refused(capsys, "serve", "--register", "agreement")
