@@ -45,9 +45,9 @@ class ShownOrder(BaseModel):
 
 
 @router.get("/state")
-def read_state(stream: Stream) -> dict[str, Any]:
+def readstate_of(stream: Stream) -> dict[str, Any]:
     """Return what the workstation shows now."""
-    return _state(stream)
+    return state_of(stream)
 
 
 @router.get("/colours")
@@ -60,13 +60,13 @@ def read_colours(name: ColourName = "magma") -> list[list[int]]:
 @router.get("/frames/{number}")
 def read_frame(number: int, stream: Stream) -> dict[str, Any]:
     """Return a frame's circumstances, its silhouette, and the hull after it."""
-    return frame_facts(_record(stream, number))
+    return frame_facts(record_at(stream, number))
 
 
 @router.get("/frames/{number}/image")
 def read_image(number: int, stream: Stream) -> Response:
     """Return a frame's levels: rows × columns little-endian uint16, n is floor + n · step in dB."""
-    levels = encoded_levels(_record(stream, number).frame)
+    levels = encoded_levels(record_at(stream, number).frame)
     rows, columns = levels.shape
     facts = {"Rows": rows, "Columns": columns, "Floor-dB": FLOOR_DB, "Step-dB": STEP_DB}
     return Response(
@@ -86,7 +86,7 @@ def order_playback(order: PlaybackOrder, stream: Stream) -> dict[str, Any]:
             raise HTTPException(422, str(error)) from error
     if order.action is not None:
         getattr(stream, order.action)()
-    return _state(stream)
+    return state_of(stream)
 
 
 @router.post("/shown")
@@ -96,7 +96,7 @@ def order_shown(order: ShownOrder, stream: Stream) -> dict[str, Any]:
         stream.choose(order.frame)
     except ValueError as error:
         raise HTTPException(404, str(error)) from error
-    return _state(stream)
+    return state_of(stream)
 
 
 @router.websocket("/live")
@@ -116,7 +116,7 @@ async def _send_states(page: WebSocket, stream: LiveStream, changes: Changes) ->
         while True:
             await changed.wait()
             changed.clear()
-            await page.send_json(_state(stream))
+            await page.send_json(state_of(stream))
 
 
 async def _until_hung_up(page: WebSocket) -> None:
@@ -124,11 +124,13 @@ async def _until_hung_up(page: WebSocket) -> None:
         pass  # whatever it says, it was not asked
 
 
-def _state(stream: LiveStream) -> dict[str, Any]:
-    return state_facts(stream.snapshot, stream.source, stream.settings.side_m)
+def state_of(stream: LiveStream) -> dict[str, Any]:
+    """Return what the workstation shows now."""
+    return state_facts(stream.snapshot, stream.source)
 
 
-def _record(stream: LiveStream, number: int) -> Record:
+def record_at(stream: LiveStream, number: int) -> Record:
+    """Return frame `number`, or answer that there is none."""
     records = stream.snapshot.records
     if not 1 <= number <= len(records):
         raise HTTPException(

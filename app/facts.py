@@ -8,14 +8,16 @@ from app.pictures import FLOOR_DB, STEP_DB
 from app.playback import SPEEDS_HZ
 from app.snapshot import Record, Snapshot
 from app.source import Source
+from core.analysis.hull import Hull
 from core.arrays import Floats
 from core.geometry.track import angles_from_line_of_sight
 from core.hull.simplification import Simplified
 from core.measurement.extents import Extent
 from core.measurement.lines import LineMeasurement
+from core.reconstruction import ReconstructionSettings
 
 
-def state_facts(snapshot: Snapshot, source: Source, side_m: float) -> dict[str, Any]:
+def state_facts(snapshot: Snapshot, source: Source) -> dict[str, Any]:
     """Return what the page shows, apart from the frames themselves."""
     return {
         "source": {
@@ -34,25 +36,55 @@ def state_facts(snapshot: Snapshot, source: Source, side_m: float) -> dict[str, 
         "labels": [record.frame.label for record in snapshot.records],
         "shown": None if snapshot.shown is None else snapshot.shown.number,
         "following": snapshot.chosen is None,
-        "window_m": side_m,
+        "window_m": snapshot.settings.side_m,
+        "carving": carving_facts(snapshot.settings),
+        "frames_info": [frame_info(record) for record in snapshot.records],
+        "latency_ms": {"last": snapshot.latency_ms},
         "hull": None if snapshot.hull is None else hull_facts(snapshot.hull),
         "light": None if snapshot.light is None else _light_facts(snapshot.light),
     }
 
 
-def hull_facts(record: Record) -> dict[str, Any]:
-    """Return the hull after a frame; what the views do not bound has no number."""
-    is_bounded = all(extent.is_bounded for extent in record.extents)
+def carving_facts(settings: ReconstructionSettings) -> dict[str, Any]:
+    """Return by what the hull is carved."""
     return {
-        "frames": record.number,
-        "views": record.voting,
-        "is_empty": record.face_count == 0,
-        "vertices": record.vertex_count,
-        "faces": record.face_count,
-        "volume_m3": record.volume_m3 if is_bounded else None,
-        "extents": [_extent_facts(extent) for extent in record.extents],
-        "lines": [_line_facts(line) for line in record.lines],
-        "unobserved": _vector(record.unobserved),
+        "rule": settings.rule,
+        "tolerated_misses": settings.tolerated_misses,
+        "spacing_m": settings.spacing_m,
+        "side_m": settings.side_m,
+    }
+
+
+def frame_info(record: Record) -> dict[str, Any]:
+    """Return what the list of all frames shows of one."""
+    analysed = record.analysed
+    return {
+        "number": record.number,
+        "state": analysed.state,
+        "edited": analysed.history.is_edited,
+        "revision": analysed.history.revision,
+        "votes": analysed.votes,
+        "sensor": record.frame.sensor,
+    }
+
+
+def hull_facts(hull: Hull) -> dict[str, Any]:
+    """Return a hull's numbers; what the views do not bound has none."""
+    is_bounded = all(extent.is_bounded for extent in hull.extents)
+    return {
+        "revision": hull.revision,
+        "frames": hull.frames,
+        "views": hull.voting,
+        "threshold": hull.threshold,
+        "is_preview": hull.is_preview,
+        "is_empty": hull.face_count == 0,
+        "emptied_by": list(hull.emptied_by),
+        "vertices": hull.vertex_count,
+        "faces": hull.face_count,
+        "volume_m3": hull.volume_m3 if is_bounded else None,
+        "extents": [_extent_facts(extent) for extent in hull.extents],
+        "lines": [_line_facts(line) for line in hull.lines],
+        "unobserved": _vector(hull.unobserved),
     }
 
 
@@ -62,7 +94,7 @@ def _light_facts(light: Simplified) -> dict[str, Any]:
 
 
 def frame_facts(record: Record) -> dict[str, Any]:
-    """Return a frame's circumstances, its silhouette, and the hull after it.
+    """Return a frame's circumstances, its silhouette, and the hull when it had come.
 
     `theta_deg` and `phi_deg` are the line of sight's angles in the target frame, not the station's
     elevation and azimuth.
@@ -72,7 +104,7 @@ def frame_facts(record: Record) -> dict[str, Any]:
     return {
         "number": record.number,
         "label": frame.label,
-        "note": record.note,
+        "note": record.analysed.note,
         "sensor": frame.sensor,
         "time_s": frame.time_s,
         "shape": frame.shape,
@@ -85,13 +117,25 @@ def frame_facts(record: Record) -> dict[str, Any]:
         "theta_deg": float(np.degrees(theta_rad)),
         "phi_deg": float(np.degrees(phi_rad)),
         "image": {"floor_db": FLOOR_DB, "step_db": STEP_DB},
-        "silhouette": {
-            "rings": [ring.tolist() for ring in record.silhouette.rings],
-            "claim": record.silhouette.claim,
-            "provenance": record.silhouette.provenance,
-            "area_px": record.silhouette.area_px(),
-        },
-        "hull": hull_facts(record),
+        "state": record.analysed.state,
+        "silhouette": _silhouette_facts(record),
+        "hull": hull_facts(record.hull),
+    }
+
+
+def _silhouette_facts(record: Record) -> dict[str, Any]:
+    silhouette, history = record.silhouette, record.analysed.history
+    return {
+        "rings": [ring.tolist() for ring in silhouette.rings],
+        "claim": silhouette.claim,
+        "component": silhouette.component,
+        "provenance": silhouette.provenance,
+        "area_px": silhouette.area_px(),
+        "revision": history.revision,
+        "edited": history.is_edited,
+        "can_undo": history.can_undo,
+        "can_redo": history.can_redo,
+        "repair": history.present.repair,
     }
 
 

@@ -9,7 +9,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
 
-LARGEST_BODY_BYTES = 64 * 1024
+LARGEST_BODY_BYTES = 1024 * 1024
+"""An outline of 20,000 vertices, written with all their digits."""
 
 PAGE_POLICY = "; ".join(
     [

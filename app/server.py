@@ -83,7 +83,7 @@ def workstation(
     viser_server = PrivateViserServer()
     try:
         app = create_app(stream, viser_server.address)
-        stream.observe(Viewport(viser_server, stream.settings.side_m).show)
+        stream.observe(Viewport(viser_server).show)
         stream.start()
         yield app
     finally:

@@ -3,13 +3,12 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from core.arrays import Floats
+from core.analysis.frames import AnalysedFrame
+from core.analysis.hull import Hull
 from core.frame import Frame
 from core.hull.simplification import Simplified
 from core.hull.surface import Surface
-from core.measurement.extents import Extent
-from core.measurement.lines import LineMeasurement
-from core.reconstruction import Step
+from core.reconstruction import ReconstructionSettings
 from core.silhouettes.silhouette import Silhouette
 
 Status = Literal["preparing", "playing", "paused", "finished", "failed"]
@@ -17,32 +16,30 @@ Status = Literal["preparing", "playing", "paused", "finished", "failed"]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Record:
-    """What is kept of a step: everything but the surface, which only the latest hull needs.
+    """A frame as it stands, and what the hull was when it had come.
 
     Attributes:
-        number: how many frames had come, this one included.
-        voting: how many of them voted.
-        frame: the frame that came.
-        silhouette: its outline.
-        note: what a person should know of this frame, empty if nothing.
-        extents: of the hull after it; empty when the hull is.
-        lines: principal lines of the hull after it; empty while an extent of it is open.
-        unobserved: (3,) direction that no frame up to this one constrains, or None.
-        vertex_count, face_count: of the hull after it.
-        volume_m3: of the hull after it.
+        analysed: the frame, its outline and its state now.
+        hull: after it came; its revision tells it from the present one.
     """
 
-    number: int
-    voting: int
-    frame: Frame
-    silhouette: Silhouette
-    note: str
-    extents: tuple[Extent, ...]
-    lines: tuple[LineMeasurement, ...]
-    unobserved: Floats | None
-    vertex_count: int
-    face_count: int
-    volume_m3: float
+    analysed: AnalysedFrame
+    hull: Hull
+
+    @property
+    def number(self) -> int:
+        """How many frames had come, this one included."""
+        return self.analysed.number
+
+    @property
+    def frame(self) -> Frame:
+        """The frame that came."""
+        return self.analysed.frame
+
+    @property
+    def silhouette(self) -> Silhouette:
+        """Its outline."""
+        return self.analysed.silhouette
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -55,11 +52,14 @@ class Snapshot:
         status: what the live loop is doing.
         message: why it failed, empty otherwise.
         speed_hz: frames per second, None for as fast as they are computed.
+        settings: by which the hull is carved.
         records: one per frame so far, oldest first.
-        surface: the hull of all of them, None before the first.
-        light: the same with fewer faces for the browser to draw once no more frames come, None
+        hull: what is known of the hull of all of them, None before the first.
+        surface: of that hull, None before the first frame.
+        light: the same with fewer faces for the browser to draw once nothing changes it, None
             until then and where the hull has few enough.
         chosen: number of the frame that the analyst picked, None to follow the latest.
+        latency_ms: from the last edit's arrival until its hull could be shown, None before one.
     """
 
     run: int
@@ -67,10 +67,13 @@ class Snapshot:
     status: Status
     message: str = ""
     speed_hz: float | None
+    settings: ReconstructionSettings
     records: tuple[Record, ...] = ()
+    hull: Hull | None = None
     surface: Surface | None = None
     light: Simplified | None = None
     chosen: int | None = None
+    latency_ms: float | None = None
 
     @property
     def shown(self) -> Record | None:
@@ -83,25 +86,3 @@ class Snapshot:
     def drawn(self) -> Surface | None:
         """The surface that the browser draws."""
         return self.surface if self.light is None else self.light.surface
-
-    @property
-    def hull(self) -> Record | None:
-        """The record that describes the current hull."""
-        return self.records[-1] if self.records else None
-
-
-def record_of(step: Step) -> Record:
-    """Return what is kept of a step."""
-    return Record(
-        number=step.number,
-        voting=step.voting,
-        frame=step.frame,
-        silhouette=step.silhouette,
-        note=step.note,
-        extents=step.extents,
-        lines=step.lines,
-        unobserved=step.unobserved,
-        vertex_count=len(step.surface.vertices_m),
-        face_count=len(step.surface.faces),
-        volume_m3=step.surface.volume_m3(),
-    )

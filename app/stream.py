@@ -1,35 +1,46 @@
-"""The live loop: frames in, snapshots of the shrinking hull out, at the analyst's pace."""
+"""The live loop: frames in, edits in, snapshots of the hull out, at the analyst's pace."""
 
 import logging
 import threading
-from collections.abc import Callable, Iterable, Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 
 from app.observers import Observer, Observers
 from app.playback import Playback
-from app.snapshot import Snapshot, Status, record_of
+from app.snapshot import Record, Snapshot, Status
 from app.source import Source
-from core.frame import Frame
+from app.tape import Take, Tape
+from core.analysis.analysis import Analysis
 from core.hull.closed_mesh import Surface
 from core.hull.simplification import simplified
 from core.hull.volume import VoteVolume
-from core.reconstruction import ReconstructionSettings, Step, reconstruct
+from core.reconstruction import ReconstructionSettings
+from core.silhouettes.silhouette import Silhouette
 
 SurfaceOf = Callable[[VoteVolume], Surface]
 
 MOST_IDLE_FACES = 100_000
 """That a browser without a graphics card still turns smoothly."""
 
+QUIET_S = 3.0
+"""Without an edit, before a large hull is simplified: an analyst at work needs the processors."""
+
+PREVIEW_LASTS_S = 10.0
+"""Without news of it; a page that was closed in the middle of a stroke never takes it back."""
+
 _log = logging.getLogger("radarhull")
 
 
 class LiveStream:
-    """Runs a reconstruction in a thread and tells observers of every change.
+    """Runs an analysis, frame by frame in a thread and edit by edit, and tells observers.
 
-    The next step is computed while the current one is on screen, and held back until playback
-    releases it: stepping is immediate, and nothing changes while paused. Observers are called one
-    at a time and in order, and nobody waits for them but the thread that calls them.
+    The next frame is imaged and outlined while the current one is on screen, and held back until
+    playback releases it: stepping is immediate, and nothing appears while paused. Frames and edits
+    change the analysis one at a time; imaging holds no lock, so that edits never wait for it.
+    Observers are called one at a time and in order, and nobody waits for them but the thread that
+    calls them.
     """
 
     def __init__(
@@ -40,20 +51,30 @@ class LiveStream:
         playback: Playback | None = None,
         surface_of: SurfaceOf = VoteVolume.surface,
     ) -> None:
-        """Prepare to play `source`; nothing runs before `start`."""
+        """Prepare to play `source`; nothing runs before `start`.
+
+        Raises:
+            ValueError: a grid too large.
+        """
         self.source = source
-        self.settings = settings or ReconstructionSettings()
         self._playback = playback or Playback()
-        self._surface_of = surface_of
-        self._tape = _Tape(source.frames)
+        self._analysis = Analysis(settings, surface_of=surface_of)
+        self._records: tuple[Record, ...] = ()
+        self._tape = self._new_tape()
         self._observers = Observers()
+        # The analysis changes under the first lock, the snapshot under the second, which may be
+        # taken while the first is held, never the other way round.
+        self._working = threading.Lock()
         self._changed = threading.Condition()
+        self._ticket = 0
+        self._preview_end: threading.Timer | None = None
         self._stopping = False
         self._thread = threading.Thread(target=self._work, name="live-stream", daemon=True)
         self._snapshot = Snapshot(
             run=1,
             status="preparing" if self._playback.is_playing else "paused",
             speed_hz=self._playback.speed_hz,
+            settings=self._analysis.settings,
         )
 
     @property
@@ -75,6 +96,7 @@ class LiveStream:
         with self._changed:
             self._stopping = True
             self._changed.notify_all()
+        self._forget_preview_end()
         self._observers.dismiss(timeout_s)
         if self._thread.is_alive():
             self._thread.join(timeout_s)
@@ -96,18 +118,72 @@ class LiveStream:
         self._command(lambda: self._playback.set_speed(speed_hz))
 
     def restart(self) -> None:
-        """Start again from the first frame; frames already received are not asked for again."""
-        with self._changing():
-            self._playback.restart()
-            if self._snapshot.status == "failed":
-                self._tape = _Tape(self.source.frames)
-            self._publish(
-                Snapshot(
-                    run=self._snapshot.run + 1,
-                    status="preparing",
-                    speed_hz=self._playback.speed_hz,
+        """Start again from the first frame; the source is not asked again for what it gave.
+
+        Frames come back with their edited outlines and states: a replay loses no work.
+        """
+        with self._working:
+            self._analysis.rewind()
+            self._records = ()
+            with self._changed:
+                self._playback.restart()
+                if self._snapshot.status == "failed":
+                    self._tape = self._new_tape()
+                self._publish(
+                    Snapshot(
+                        run=self._snapshot.run + 1,
+                        status="preparing",
+                        speed_hz=self._playback.speed_hz,
+                        settings=self._analysis.settings,
+                        latency_ms=self._snapshot.latency_ms,
+                    )
                 )
-            )
+                self._changed.notify_all()
+        self._observers.call()
+
+    def edit(self, operation: Callable[[Analysis], object]) -> Snapshot:
+        """Let `operation` change the analysis, and return the snapshot with the hull after it.
+
+        It waits for no frame that is being imaged. What `operation` raises is raised here, and
+        then it has changed nothing. Previews that still wait are dropped.
+        """
+        arrived_s = time.perf_counter()
+        self._next_ticket()
+        with self._working:
+            operation(self._analysis)
+            snapshot = self._show_analysis(edited_s=arrived_s)
+        self._forget_preview_end()
+        self._observers.call()
+        return snapshot
+
+    def preview(self, number: int, silhouette: Silhouette, *, base_revision: int) -> Snapshot:
+        """Show the hull as it would be with another outline of a frame; the latest wins.
+
+        Raises:
+            StaleRevision: the frame's outline has changed since `base_revision`.
+            ValueError: there is no such frame, or an outline that cannot vote.
+        """
+        ticket = self._next_ticket()
+        with self._working:
+            if ticket != self._ticket:
+                return self._snapshot  # another came while this one waited
+            self._analysis.preview(number, silhouette, base_revision=base_revision)
+            snapshot = self._show_analysis()
+            self._expect_preview_end()
+        self._observers.call()
+        return snapshot
+
+    def end_preview(self) -> Snapshot:
+        """Show the hull itself again."""
+        self._next_ticket()
+        with self._working:
+            if self._snapshot.hull is None or not self._snapshot.hull.is_preview:
+                return self._snapshot
+            self._analysis.end_preview()
+            snapshot = self._show_analysis()
+        self._forget_preview_end()
+        self._observers.call()
+        return snapshot
 
     def choose(self, number: int | None) -> None:
         """Show frame `number` (from 1) while the hull stays the latest; None follows the latest.
@@ -164,8 +240,8 @@ class LiveStream:
             self._wait_for_restart(run)
 
     def _play_through(self, run: int) -> None:
-        for step in reconstruct(self._tape.frames(), self.settings, surface_of=self._surface_of):
-            if not self._release(run, step):
+        for take in self._tape.takes():
+            if not (self._is_released(run) and self._take_in(run, take)):
                 return
         if not self.snapshot.records and not self._is_over(run):
             raise ValueError(f"{self.source.name} holds no frames, so there is nothing to carve.")
@@ -173,32 +249,75 @@ class LiveStream:
         # Seconds of work for half a million faces; the whole hull is on show meanwhile.
         self._lighten(run)
 
+    def _is_released(self, run: int) -> bool:
+        """Wait until playback lets the next frame appear; tell whether the run goes on."""
+        with self._changed:
+            while not self._is_over(run) and (wait_s := self._playback.wait_s()) != 0:
+                self._changed.wait(wait_s)
+            if not self._is_over(run):
+                self._playback.mark_released()
+            return not self._is_over(run)
+
+    def _take_in(self, run: int, take: Take) -> bool:
+        """Receive a frame and show the hull after it; tell whether the run goes on."""
+        with self._working:
+            if self._is_over(run):
+                return False
+            self._analysis.receive(take.frame, take.silhouette)
+            self._show_analysis()
+        self._observers.call()
+        return True
+
+    def _show_analysis(self, *, edited_s: float | None = None) -> Snapshot:
+        """Publish the analysis as it stands; whoever calls holds its lock."""
+        hull, surface = self._analysis.hull, self._analysis.surface
+        self._records = _records(self._records, self._analysis)
+        latency_ms = None if edited_s is None else 1e3 * (time.perf_counter() - edited_s)
+        with self._changed:
+            before = self._snapshot
+            after = replace(
+                before,
+                settings=self._analysis.settings,
+                records=self._records,
+                hull=hull if self._records else None,
+                surface=surface if self._records else None,
+                light=before.light if surface is before.surface else None,
+                latency_ms=before.latency_ms if latency_ms is None else latency_ms,
+            )
+            self._publish(replace(after, status=self._status_when_running(after)))
+            self._changed.notify_all()
+            return self._snapshot
+
+    def _next_ticket(self) -> int:
+        """Return the number of an edit or preview; a preview is dropped once there is a later."""
+        with self._changed:
+            self._ticket += 1
+            return self._ticket
+
+    def _expect_preview_end(self) -> None:
+        self._forget_preview_end()
+        self._preview_end = threading.Timer(PREVIEW_LASTS_S, self.end_preview)
+        self._preview_end.daemon = True
+        self._preview_end.start()
+
+    def _forget_preview_end(self) -> None:
+        if self._preview_end is not None:
+            self._preview_end.cancel()
+
     def _lighten(self, run: int) -> None:
-        """Give the browser fewer faces to draw, now that no frame will change them."""
+        """Give the browser fewer faces to draw, now that nothing changes them."""
         surface = self.snapshot.surface
-        if surface is None or len(surface.faces) <= MOST_IDLE_FACES:
+        if surface is None or not self._is_heavy():
             return
         light = simplified(surface, most_faces=MOST_IDLE_FACES)
         with self._changing():
-            if not self._is_over(run):
+            if not self._is_over(run) and self._snapshot.surface is surface:
                 self._publish(replace(self._snapshot, light=light))
 
-    def _release(self, run: int, step: Step) -> bool:
-        """Publish a step once playback lets it; tell whether the run goes on."""
-        record = record_of(step)
-        with self._changing():
-            while not self._is_over(run) and (wait_s := self._playback.wait_s()) != 0:
-                self._changed.wait(wait_s)
-            if self._is_over(run):
-                return False
-            self._playback.mark_released()
-            snapshot = replace(
-                self._snapshot,
-                records=(*self._snapshot.records, record),
-                surface=step.surface,
-            )
-            self._publish(replace(snapshot, status=self._status_when_running(snapshot)))
-        return True
+    def _is_heavy(self) -> bool:
+        shown = self._snapshot
+        is_large = shown.surface is not None and len(shown.surface.faces) > MOST_IDLE_FACES
+        return is_large and shown.light is None
 
     def _end(self, run: int, status: Status, message: str = "") -> None:
         with self._changing():
@@ -209,40 +328,36 @@ class LiveStream:
         return self._stopping or self._snapshot.run != run
 
     def _wait_for_restart(self, run: int) -> None:
+        while not self._is_over(run):
+            if self._is_quiet(run):
+                self._lighten(run)
+
+    def _is_quiet(self, run: int) -> bool:
+        """Wait for a large hull, or for news of it; tell whether it has stayed for a while."""
         with self._changed:
-            while not self._is_over(run):
+            while not self._is_over(run) and not self._is_heavy():
                 self._changed.wait()
+            surface, until_s = self._snapshot.surface, time.monotonic() + QUIET_S
+            while not self._is_over(run) and self._snapshot.surface is surface:
+                if (left_s := until_s - time.monotonic()) <= 0:
+                    return True
+                self._changed.wait(left_s)
+            return False
+
+    def _new_tape(self) -> Tape:
+        return Tape(self.source.frames, self._analysis.settings.extraction)
 
 
-class _Tape:
-    """Remembers the frames of a source, so that playing them again costs nothing.
-
-    A source's failure is remembered too: a generator that has raised looks finished afterwards.
-    """
-
-    def __init__(self, factory: Callable[[], Iterable[Frame]]) -> None:
-        self._factory = factory
-        self._recorded: list[Frame] = []
-        self._rest: Iterator[Frame] | None = None
-        self._failure: Exception | None = None
-
-    def frames(self) -> Iterator[Frame]:
-        """Yield the recorded frames, then what the source has left."""
-        yield from self._recorded
-        while (frame := self._next()) is not None:
-            self._recorded.append(frame)
-            yield frame
-
-    def _next(self) -> Frame | None:
-        if self._failure is not None:
-            raise self._failure
-        try:
-            if self._rest is None:
-                self._rest = iter(self._factory())
-            return next(self._rest, None)
-        except Exception as failure:
-            self._failure = failure
-            raise
+def _records(known: tuple[Record, ...], analysis: Analysis) -> tuple[Record, ...]:
+    """Return one record per frame, the known ones themselves where nothing has changed."""
+    records = [
+        record if record.analysed is frame else replace(record, analysed=frame)
+        for record, frame in zip(known, analysis.frames, strict=False)
+    ]
+    records += [
+        Record(analysed=frame, hull=analysis.hull) for frame in analysis.frames[len(known) :]
+    ]
+    return tuple(records)
 
 
 def _frames_so_far(count: int) -> str:

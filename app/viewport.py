@@ -9,8 +9,11 @@ from viser import transforms
 
 from app.pictures import SHOWN_FLOOR_DB, translucent_picture
 from app.snapshot import Record, Snapshot
+from core.analysis.frames import AnalysedFrame
 from core.arrays import Floats
+from core.frame import Frame
 from core.hull.surface import Surface
+from core.silhouettes.silhouette import Silhouette
 
 HULL_COLOUR = (168, 184, 204)
 OUTLINE_COLOUR = (64, 224, 208)
@@ -73,17 +76,21 @@ class PicturePlane:
 
 
 class Viewport:
-    """Keeps a viser scene in step with the snapshots it is given."""
+    """Keeps a viser scene in step with the snapshots it is given.
 
-    def __init__(self, server: viser.ViserServer, side_m: float) -> None:
-        """Set up an empty scene for a target in a cube of `side_m`."""
+    Nodes are kept and updated: viser's clients make new ones from scratch, and a new picture is
+    white until the browser has decoded it. Only what a snapshot changes is sent.
+    """
+
+    def __init__(self, server: viser.ViserServer) -> None:
+        """Set up an empty scene."""
         self._server = server
-        self._side_m = side_m
+        self._side_m = 0.0
         self._hull_shown: Surface | None = None
-        self._frame_shown: Record | None = None
-        self._prepare_view()
-        self._add_reference()
-        # Kept and updated: a new picture is white until the browser has decoded it.
+        self._frame_shown: AnalysedFrame | None = None
+        self._picture_shown: tuple[Frame, slice, slice] | None = None
+        self._aspects_shown: tuple[Frame, ...] = ()
+        self._hull: viser.MeshHandle | None = None
         self._picture = server.scene.add_image(
             "/picture",
             np.zeros((2, 2, 4), dtype=np.uint8),
@@ -97,12 +104,23 @@ class Viewport:
     def show(self, snapshot: Snapshot) -> None:
         """Bring the scene up to date; does nothing for what is already there."""
         with self._server.atomic():
+            is_resized = snapshot.settings.side_m != self._side_m
+            if is_resized:
+                self._resize(snapshot.settings.side_m)
             hull_is_new = snapshot.drawn is not self._hull_shown
             if hull_is_new:
                 self._show_hull(snapshot.drawn)
-                self._show_aspects(snapshot.records)
-            if hull_is_new or snapshot.shown is not self._frame_shown:
-                self._show_frame(snapshot.shown)
+            self._show_aspects(snapshot.records, again=is_resized)
+            shown = None if snapshot.shown is None else snapshot.shown.analysed
+            if shown is not self._frame_shown or is_resized:
+                self._show_frame(shown)
+            elif shown is not None and hull_is_new:
+                self._show_picture(shown)
+
+    def _resize(self, side_m: float) -> None:
+        self._side_m = side_m
+        self._prepare_view()
+        self._add_reference()
 
     def _prepare_view(self) -> None:
         server = self._server
@@ -144,49 +162,67 @@ class Viewport:
     def _show_hull(self, surface: Surface | None) -> None:
         self._hull_shown = surface
         if surface is None or surface.is_empty:
-            self._server.scene.remove_by_name("/hull")
+            if self._hull is not None:
+                self._hull.visible = False
             return
-        self._server.scene.add_mesh_simple(
-            "/hull",
-            vertices=surface.vertices_m,
-            faces=surface.faces,
-            color=HULL_COLOUR,
-            side="double",
-            cast_shadow=False,
-            receive_shadow=False,
-        )
+        if self._hull is None:
+            self._hull = self._server.scene.add_mesh_simple(
+                "/hull",
+                vertices=surface.vertices_m,
+                faces=surface.faces,
+                color=HULL_COLOUR,
+                side="double",
+                cast_shadow=False,
+                receive_shadow=False,
+            )
+            return
+        # Within one `atomic`, for vertices without their faces would be drawn as a tangle.
+        self._hull.vertices = surface.vertices_m.astype(np.float32)
+        self._hull.faces = surface.faces.astype(np.uint32)
+        self._hull.visible = True
 
-    def _show_frame(self, record: Record | None) -> None:
-        self._frame_shown = record
-        self._server.scene.remove_by_name("/frame")
-        plane = None if record is None else picture_plane(record, self._side_m, self._hull_shown)
-        self._picture.visible = plane is not None
-        if record is None:
+    def _show_frame(self, shown: AnalysedFrame | None) -> None:
+        self._frame_shown = shown
+        if shown is None:
+            self._server.scene.remove_by_name("/frame")
+            self._picture.visible = False
             return
-        tail, tip = (-away * self._side_m * record.frame.line_of_sight for away in SIGHT_REACH)
+        tail, tip = (-away * self._side_m * shown.frame.line_of_sight for away in SIGHT_REACH)
         self._arrow("/frame/sight", tail, tip, SIGHT_COLOUR, radius_m=0.12)
         self._label("/frame/sight/label", "line of sight", tail)
-        if plane is not None:
-            self._show_picture(record, plane)
+        self._show_picture(shown)
 
-    def _show_picture(self, record: Record, plane: PicturePlane) -> None:
-        level = record.frame.decibels(floor_db=SHOWN_FLOOR_DB)[plane.rows, plane.columns]
-        self._picture.image = translucent_picture(level, SHOWN_FLOOR_DB)
+    def _show_picture(self, shown: AnalysedFrame) -> None:
+        frame, silhouette = shown.frame, shown.silhouette
+        plane = picture_plane(frame, silhouette, self._side_m, self._hull_shown)
+        self._picture.visible = plane is not None
+        self._server.scene.remove_by_name("/frame/outline")
+        if plane is None:
+            self._server.scene.remove_by_name("/frame/border")
+            return
+        if self._picture_shown != (frame, plane.rows, plane.columns):
+            level = frame.decibels(floor_db=SHOWN_FLOOR_DB)[plane.rows, plane.columns]
+            self._picture.image = translucent_picture(level, SHOWN_FLOOR_DB)
+            self._picture_shown = frame, plane.rows, plane.columns
         self._picture.render_width = plane.width_m
         self._picture.render_height = plane.height_m
         self._picture.wxyz = plane.quaternion_wxyz()
         self._picture.position = plane.centre_m
         self._lines("/frame/border", [plane.border_m()], PLANE_COLOUR, 1.0)
-        rings = [record.frame.projection.plane_points(ring) for ring in record.silhouette.rings]
+        rings = [frame.projection.plane_points(ring) for ring in silhouette.rings]
         beside = [ring + plane.aside_m for ring in rings]
         self._lines("/frame/outline", beside, OUTLINE_COLOUR, 2.0)
 
-    def _show_aspects(self, records: tuple[Record, ...]) -> None:
+    def _show_aspects(self, records: tuple[Record, ...], *, again: bool) -> None:
         """Mark from where each frame looked, as dots where its line of sight begins."""
-        if not records:
+        frames = tuple(record.frame for record in records)
+        if frames == self._aspects_shown and not again:
+            return
+        self._aspects_shown = frames
+        if not frames:
             self._server.scene.remove_by_name("/aspects")
             return
-        sights = np.array([record.frame.line_of_sight for record in records])
+        sights = np.array([frame.line_of_sight for frame in frames])
         self._server.scene.add_point_cloud(
             "/aspects",
             points=(-SIGHT_REACH[0] * self._side_m * sights).astype(np.float32),
@@ -225,14 +261,15 @@ class Viewport:
         self._server.scene.add_label(name, text, position=position, anchor="center-center")
 
 
-def picture_plane(record: Record, side_m: float, hull: Surface | None) -> PicturePlane | None:
+def picture_plane(
+    frame: Frame, silhouette: Silhouette, side_m: float, hull: Surface | None
+) -> PicturePlane | None:
     """Return where a frame's picture stands, None for a perspective image.
 
     The picture is cut to the silhouette and a margin, or to the window of `side_m` around the
     target where nothing was found, and moved along its normal: in the plane through the target
     the hull would hide it.
     """
-    frame = record.frame
     if not frame.projection.is_affine:
         return None
     to_plane = frame.projection.plane_points
@@ -241,7 +278,7 @@ def picture_plane(record: Record, side_m: float, hull: Surface | None) -> Pictur
     size = float(np.linalg.norm(down)), float(np.linalg.norm(right))
     rows, columns = (
         slice(int(first), int(last) + 1)
-        for first, last in zip(*_window(record, np.array(size), side_m), strict=True)
+        for first, last in zip(*_window(frame, silhouette, np.array(size), side_m), strict=True)
     )
     aside = _aside(frame.projection.viewing_direction(), side_m, hull)
     middle = np.array([0.5 * (cut.start + cut.stop - 1) for cut in (rows, columns)])
@@ -272,14 +309,16 @@ def _aside(normal: Floats, side_m: float, hull: Surface | None) -> Floats:
     return (float(reach_m.min()) - PICTURE_GAP_M) * away
 
 
-def _window(record: Record, spacing_m: Floats, side_m: float) -> tuple[Floats, Floats]:
+def _window(
+    frame: Frame, silhouette: Silhouette, spacing_m: Floats, side_m: float
+) -> tuple[Floats, Floats]:
     """Return the first and the last (row, column) of the part of a frame to show in space."""
-    if record.silhouette.is_empty:
-        origin = record.frame.projection.matrix[:, 3]
+    if silhouette.is_empty:
+        origin = frame.projection.matrix[:, 3]
         first, last = origin - 0.5 * side_m / spacing_m, origin + 0.5 * side_m / spacing_m
     else:
-        seen = np.concatenate(record.silhouette.rings)
+        seen = np.concatenate(silhouette.rings)
         margin = PICTURE_MARGIN_M / spacing_m
         first, last = seen.min(axis=0) - margin, seen.max(axis=0) + margin
-    end = np.array(record.frame.shape) - 1
+    end = np.array(frame.shape) - 1
     return np.clip(np.floor(first), 0, end - 1), np.clip(np.ceil(last), 1, end)

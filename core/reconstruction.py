@@ -108,47 +108,87 @@ def reconstruct(
     views: list[View] = []
     for number, received in enumerate(frames, start=1):
         silhouette = extract_silhouette(received, settings.extraction)
-        frame = received
-        unfit = unfit_to_carve(received, silhouette, settings.most_phase_rad)
-        if not unfit:
-            if settings.registers_centroids:
-                frame = _registered(received, silhouette)
-            views.append(
-                carving_frame_view(frame, silhouette, settings.rule, depth_m=settings.side_m)
-            )
-            volume.add(views[-1])
-            volume.threshold = max(1, len(views) - settings.tolerated_misses)
-        yield _step(
+        ballot = ballot_of(received, silhouette, settings)
+        if ballot.view is not None:
+            views.append(ballot.view)
+            volume.add(ballot.view)
+            volume.threshold = vote_threshold(len(views), settings)
+        surface = surface_of(volume) if views else EMPTY_SURFACE
+        measures = measures_of(surface, volume.grid, views)
+        yield Step(
             number=number,
-            frame=frame,
+            voting=len(views),
+            frame=ballot.frame,
             silhouette=silhouette,
-            note=f"frame {number} {unfit} and does not vote" if unfit else "",
-            volume=volume,
-            views=views,
-            surface=surface_of(volume) if views else EMPTY_SURFACE,
+            note=not_voting_note(number, ballot.unfit),
+            surface=surface,
+            threshold=volume.threshold or 0,
+            extents=measures.extents,
+            lines=measures.lines,
+            unobserved=measures.unobserved,
         )
 
 
-def _step(
-    *,
-    number: int,
-    frame: Frame,
-    silhouette: Silhouette,
-    note: str,
-    volume: VoteVolume,
-    views: Sequence[View],
-    surface: Surface,
-) -> Step:
-    extents = () if surface.is_empty else axis_extents(surface, volume.grid, views)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Ballot:
+    """What a frame with a silhouette says of where the target is.
+
+    Attributes:
+        frame: registered if the settings ask for it.
+        view: that votes, None for a silhouette that must not.
+        unfit: why it must not, in a clause for people to read; empty if it votes.
+    """
+
+    frame: Frame
+    view: View | None
+    unfit: str = ""
+
+
+def ballot_of(received: Frame, silhouette: Silhouette, settings: ReconstructionSettings) -> Ballot:
+    """Return how a frame votes by a silhouette drawn in it.
+
+    Raises:
+        ValueError: a picture against the sun, or one that registration by centroid does not suit.
+    """
+    unfit = unfit_to_carve(received, silhouette, settings.most_phase_rad)
+    if unfit:
+        return Ballot(frame=received, view=None, unfit=unfit)
+    frame = _registered(received, silhouette) if settings.registers_centroids else received
+    view = carving_frame_view(frame, silhouette, settings.rule, depth_m=settings.side_m)
+    return Ballot(frame=frame, view=view)
+
+
+def vote_threshold(voting: int, settings: ReconstructionSettings) -> int | None:
+    """Return the votes that a voxel of the hull has at least (T of eq. 25), None without views."""
+    return max(1, voting - settings.tolerated_misses) if voting else None
+
+
+def not_voting_note(number: int, why: str) -> str:
+    """Return the note of a frame that does not vote, empty for one that does."""
+    return f"frame {number} {why} and does not vote" if why else ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Measures:
+    """What is measured on a hull.
+
+    Attributes:
+        extents: along x, y, z; empty when the hull is.
+        lines: span, length and diameter along the hull's own principal axes; empty while any
+            extent is open or the hull is empty.
+        unobserved: (3,) direction that no view constrains, or None.
+    """
+
+    extents: tuple[Extent, ...]
+    lines: tuple[LineMeasurement, ...]
+    unobserved: Floats | None
+
+
+def measures_of(surface: Surface, grid: VoxelGrid, views: Sequence[View]) -> Measures:
+    """Measure the hull that views carved on a grid."""
+    extents = () if surface.is_empty else axis_extents(surface, grid, views)
     is_closed = bool(extents) and all(extent.is_bounded for extent in extents)
-    return Step(
-        number=number,
-        voting=len(views),
-        frame=frame,
-        silhouette=silhouette,
-        note=note,
-        surface=surface,
-        threshold=volume.threshold or 0,
+    return Measures(
         extents=extents,
         lines=principal_lines(surface, LINE_NAMES) if is_closed else (),
         unobserved=unobserved_direction([view.projection for view in views]) if views else None,

@@ -64,6 +64,24 @@ def _repaired(rings: tuple[Floats, ...]) -> Outline:
     Raises:
         ValueError: they enclose none.
     """
+    area, parts = enclosed_area(rings)
+    # Needles without width hold no area, but who stands on one is on the outline. Rings that
+    # touch would overlap if each were moved outward alone.
+    needles = [part for part in shapely.get_parts(parts) if part.area == 0]
+    grown = shapely.buffer(shapely.union_all([area, *needles]), OUTSET_PX, quad_segs=2)
+    points, offsets = closed_rings(rings_of(grown))
+    repair = what_was_repaired(rings, area.area)
+    return Outline(points=points, offsets=offsets, repair=repair)
+
+
+def enclosed_area(
+    rings: tuple[Floats, ...],
+) -> tuple[shapely.Geometry, list[shapely.Geometry]]:
+    """Return the area that crossing or touching rings enclose, and each ring's made valid.
+
+    Raises:
+        ValueError: they enclose none.
+    """
     parts = [shapely.make_valid(shapely.Polygon(ring)) for ring in rings]
     solid = [clockwise_area_px(ring) > 0 or len(rings) == 1 for ring in rings]
     outer = shapely.union_all([part for part, keep in zip(parts, solid, strict=True) if keep])
@@ -76,16 +94,10 @@ def _repaired(rings: tuple[Floats, ...]) -> Outline:
             "The outline encloses no area: its vertices coincide or lie on one line. "
             "Draw at least three vertices that are not on a line."
         )
-    # Needles without width hold no area, but who stands on one is on the outline. Rings that
-    # touch would overlap if each were moved outward alone.
-    needles = [part for part in shapely.get_parts(parts) if part.area == 0]
-    grown = shapely.buffer(shapely.union_all([area, *needles]), OUTSET_PX, quad_segs=2)
-    points, offsets = closed_rings(rings_of(grown))
-    repair = _what_was_repaired(rings, area.area)
-    return Outline(points=points, offsets=offsets, repair=repair)
+    return area, parts
 
 
-def _what_was_repaired(rings: tuple[Floats, ...], area_px: float) -> str:
+def what_was_repaired(rings: tuple[Floats, ...], area_px: float) -> str:
     """Return the sentence that tells the analyst; rings that merely touch are nothing to tell."""
     before = abs(sum(clockwise_area_px(ring) for ring in rings))
     if abs(before - area_px) <= 1e-9 * max(before, 1.0):

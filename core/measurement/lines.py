@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-import trimesh
 
 from core.arrays import Floats, frozen
 from core.hull.surface import Surface
@@ -40,19 +39,35 @@ def principal_lines(surface: Surface, names: tuple[str, str, str]) -> tuple[Line
     Raises:
         ValueError: the surface is empty.
 
-    Source: volume integrals over a closed mesh, Eberly, "Polyhedral mass properties", 2002, as
-    in trimesh. A smallest enclosing box would turn by 45° on a cross of body and panels.
+    Source: volume integrals over a closed mesh, summed over the tetrahedra between its faces and
+    one point, Tonon, "Explicit exact formulas for the 3-D tetrahedron inertia tensor", 2005. A
+    smallest enclosing box would turn by 45° on a cross of body and panels.
     """
     if surface.is_empty:
         raise ValueError("The hull is empty, so nothing can be measured; lower the threshold.")
-    mesh = trimesh.Trimesh(surface.vertices_m, surface.faces, process=False)
-    axes = mesh.principal_inertia_vectors
-    extents = np.ptp(surface.vertices_m @ axes.T, axis=0)
+    _, axes = np.linalg.eigh(_covariance(surface))
+    extents = np.ptp(surface.vertices_m @ axes, axis=0)
     order = np.argsort(extents)[::-1]
     return tuple(
-        LineMeasurement(name=name, length_m=float(extents[axis]), direction=axes[axis])
+        LineMeasurement(name=name, length_m=float(extents[axis]), direction=axes[:, axis])
         for name, axis in zip(names, order, strict=True)
     )
+
+
+def _covariance(surface: Surface) -> Floats:
+    """Return the (3, 3) second moments of the enclosed body about its centroid, in m⁵.
+
+    Its eigenvectors are the principal axes of inertia.
+    """
+    points = surface.vertices_m - surface.vertices_m.mean(axis=0)
+    a, b, c = (points[surface.faces[:, corner]] for corner in range(3))
+    sixfold = np.einsum("ij,ij->i", a, np.cross(b, c))
+    total = a + b + c
+    corners = (a, b, c, total)
+    about_mean = sum(part.T @ (part * sixfold[:, None]) for part in corners) / 120
+    volume, moment = sixfold.sum() / 6, sixfold @ total / 24
+    covariance: Floats = about_mean - np.outer(moment, moment) / volume
+    return covariance
 
 
 def angle_between_lines_rad(first: Floats, second: Floats) -> float:

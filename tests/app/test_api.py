@@ -5,7 +5,8 @@ import pytest
 from httpx import Client
 
 from app.facts import frame_facts
-from app.snapshot import record_of
+from app.snapshot import Record
+from core.analysis.analysis import Analysis
 from core.reconstruction import reconstruct
 from tests.app.synthetic import SETTINGS, empty_frame, frames
 
@@ -54,8 +55,9 @@ def test_principal_lines_come_with_the_hull_that_they_measure(client: Client) ->
 
 
 def test_a_frame_that_shows_no_target_says_so() -> None:
-    step = next(reconstruct([empty_frame()], SETTINGS))
-    facts = frame_facts(record_of(step))
+    analysis = Analysis(SETTINGS)
+    analysed = analysis.receive(empty_frame())
+    facts = frame_facts(Record(analysed=analysed, hull=analysis.hull))
     assert facts["note"] == "frame 1 shows no target and does not vote"
     assert facts["hull"]["views"] == 0
     assert facts["hull"]["is_empty"]

@@ -1,0 +1,204 @@
+"""The JSON interface for editing: outlines, previews, undo, review states, proposals, carving."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Annotated, Any
+
+from fastapi import APIRouter, HTTPException
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.api import Stream, record_at, state_of
+from app.facts import frame_facts
+from app.proposals import Question, proposal, reprojected_rings
+from core.analysis.analysis import Analysis
+from core.analysis.frames import ReviewState
+from core.analysis.history import NothingLeft, StaleRevision
+from core.hull.drawing import MOST_RINGS, MOST_VERTICES, drawn_silhouette
+from core.hull.shadow import CarvingRule
+from core.silhouettes.silhouette import Claim, Silhouette
+
+router = APIRouter(prefix="/api")
+
+Ring = Annotated[list[tuple[float, float]], Field(max_length=MOST_VERTICES)]
+Rings = Annotated[list[Ring], Field(max_length=MOST_RINGS)]
+
+MOST_SIDE_M = 1000.0
+MOST_VOXELS_A_SIDE = 640
+"""That an interactive grid may have: 640³ is 260 million voxels."""
+
+
+class Body(BaseModel):
+    """A request's body; what it does not know it refuses."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+class OutlineOrder(Body):
+    """An outline of a frame, as it was drawn."""
+
+    rings: Rings = Field(description="Each a list of (row, column); none: shows no target.")
+    claim: Claim
+    component: str = Field(default="target", min_length=1, max_length=80)
+    tool: str = Field(default="drawing", min_length=1, max_length=40)
+    base_revision: int = Field(description="Of the outline that this one was made from.")
+
+
+class StepOrder(Body):
+    """Undo or redo."""
+
+    base_revision: int
+
+
+class StateOrder(Body):
+    """How far the analyst is with a frame."""
+
+    state: ReviewState
+
+
+class ProposalOrder(Body):
+    """What a tool shall propose."""
+
+    tool: str = Field(max_length=40)
+    parameters: dict[str, Any] = {}
+    rings: Rings | None = Field(default=None, description="The outline as it stands on the page.")
+
+
+class CarvingOrder(Body):
+    """How the hull shall be carved; what is not given stays."""
+
+    rule: CarvingRule | None = None
+    tolerated_misses: int | None = Field(default=None, ge=0, le=1000)
+    spacing_m: float | None = Field(default=None, gt=0, le=MOST_SIDE_M)
+    side_m: float | None = Field(default=None, gt=0, le=MOST_SIDE_M)
+
+
+@router.put("/frames/{number}/silhouette")
+def commit_outline(number: int, order: OutlineOrder, stream: Stream) -> dict[str, Any]:
+    """Give a frame another outline, in the journal, and return the frame once the hull follows."""
+    with _refusing():
+        silhouette, repair = _drawn(number, order, stream)
+        stream.edit(
+            lambda analysis: analysis.commit(
+                number,
+                silhouette,
+                tool=order.tool,
+                base_revision=order.base_revision,
+                repair=repair,
+            )
+        )
+    return frame_facts(record_at(stream, number))
+
+
+@router.put("/frames/{number}/preview")
+def preview_outline(number: int, order: OutlineOrder, stream: Stream) -> dict[str, Any]:
+    """Let the hull follow an outline that is not committed; the latest wins."""
+    with _refusing():
+        silhouette, _ = _drawn(number, order, stream)
+        stream.preview(number, silhouette, base_revision=order.base_revision)
+    return frame_facts(record_at(stream, number))
+
+
+@router.delete("/frames/{number}/preview")
+def end_preview(number: int, stream: Stream) -> dict[str, Any]:
+    """Show the hull of the committed outlines again."""
+    record_at(stream, number)
+    stream.end_preview()
+    return frame_facts(record_at(stream, number))
+
+
+@router.post("/frames/{number}/undo")
+def undo(number: int, order: StepOrder, stream: Stream) -> dict[str, Any]:
+    """Take the frame's last edit back."""
+    return _edited(
+        number, stream, lambda work: work.undo(number, base_revision=order.base_revision)
+    )
+
+
+@router.post("/frames/{number}/redo")
+def redo(number: int, order: StepOrder, stream: Stream) -> dict[str, Any]:
+    """Do the frame's edit again that was taken back last."""
+    return _edited(
+        number, stream, lambda work: work.redo(number, base_revision=order.base_revision)
+    )
+
+
+@router.put("/frames/{number}/state")
+def set_state(number: int, order: StateOrder, stream: Stream) -> dict[str, Any]:
+    """Say how far the analyst is with a frame; an excluded one does not vote."""
+    _edited(number, stream, lambda work: work.set_state(number, order.state))
+    return state_of(stream)
+
+
+@router.post("/frames/{number}/proposals")
+def propose(number: int, order: ProposalOrder, stream: Stream) -> dict[str, Any]:
+    """Return the outline that a tool proposes; nothing changes."""
+    snapshot = stream.snapshot
+    record = record_at(stream, number)
+    with _refusing():
+        drawn = None if order.rings is None else _silhouette(order.rings, record.silhouette)[0]
+        question = Question(snapshot=snapshot, record=record, drawn=drawn or record.silhouette)
+        return proposal(order.tool, order.parameters, question).facts()
+
+
+@router.get("/frames/{number}/reprojection")
+def read_reprojection(number: int, stream: Stream) -> dict[str, Any]:
+    """Return the outline of the hull as the frame sees it, and that hull's revision."""
+    snapshot = stream.snapshot
+    rings = reprojected_rings(snapshot, record_at(stream, number))
+    revision = None if snapshot.hull is None else snapshot.hull.revision
+    return {"rings": [ring.tolist() for ring in rings], "revision": revision}
+
+
+@router.put("/carving")
+def set_carving(order: CarvingOrder, stream: Stream) -> dict[str, Any]:
+    """Carve by another rule, threshold or grid."""
+    given = {key: value for key, value in order.model_dump().items() if value is not None}
+
+    def change(analysis: Analysis) -> None:
+        settings = replace(analysis.settings, **given)
+        if settings.side_m / settings.spacing_m > MOST_VOXELS_A_SIDE:
+            raise ValueError(
+                f"A grid of {settings.side_m:g} m at {settings.spacing_m:g} m has "
+                f"{settings.side_m / settings.spacing_m:.0f} voxels a side; at most "
+                f"{MOST_VOXELS_A_SIDE} follow edits at once. Use a larger spacing."
+            )
+        analysis.set_carving(settings)
+
+    with _refusing():
+        stream.edit(change)
+    return state_of(stream)
+
+
+def _edited(number: int, stream: Stream, operation: Callable[[Analysis], object]) -> dict[str, Any]:
+    record_at(stream, number)
+    with _refusing():
+        stream.edit(operation)
+    return frame_facts(record_at(stream, number))
+
+
+def _drawn(number: int, order: OutlineOrder, stream: Stream) -> tuple[Silhouette, str]:
+    present = record_at(stream, number).silhouette
+    like = replace(present, claim=order.claim, component=order.component)
+    return _silhouette(order.rings, replace(like, provenance=f"edited with {order.tool}"))
+
+
+def _silhouette(rings: Rings, like: Silhouette) -> tuple[Silhouette, str]:
+    return drawn_silhouette(
+        rings,
+        image_shape=like.image_shape,
+        claim=like.claim,
+        component=like.component,
+        provenance=like.provenance,
+    )
+
+
+@contextmanager
+def _refusing() -> Iterator[None]:
+    """Answer what the engine refuses with its sentence."""
+    try:
+        yield
+    except (StaleRevision, NothingLeft) as error:
+        raise HTTPException(409, str(error)) from error
+    except ValueError as error:
+        raise HTTPException(422, str(error)) from error

@@ -1,0 +1,184 @@
+"""Tools that propose outlines: the page names one, and what it proposes changes nothing.
+
+A tool is a function of a question and of its parameters, checked by a model of its own. A new one
+is a line in `TOOLS`.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from app.snapshot import Record, Snapshot
+from core.arrays import Floats
+from core.hull.reprojection import reprojected_mask
+from core.silhouettes.contours import traced_rings
+from core.silhouettes.extraction import ExtractionSettings, extract_silhouette
+from core.silhouettes.silhouette import Claim, Silhouette
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Question:
+    """What a tool is asked about.
+
+    Attributes:
+        snapshot: all that is on show.
+        record: the frame.
+        drawn: its outline as it stands on the page.
+    """
+
+    snapshot: Snapshot
+    record: Record
+    drawn: Silhouette
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Proposal:
+    """What a tool answers.
+
+    Attributes:
+        rings: the outline, each ring (vertices, 2) as (row, column).
+        claim: what it claims to show.
+        note: what a person should know of it, empty if nothing.
+        path: an open line (vertices, 2) for tools that propose a part of an outline only.
+    """
+
+    rings: tuple[Floats, ...]
+    claim: Claim
+    note: str = ""
+    path: Floats | None = None
+
+    def facts(self) -> dict[str, Any]:
+        """Return it as JSON."""
+        facts: dict[str, Any] = {
+            "rings": [ring.tolist() for ring in self.rings],
+            "claim": self.claim,
+            "note": self.note,
+        }
+        return facts if self.path is None else {**facts, "path": self.path.tolist()}
+
+
+class Parameters(BaseModel):
+    """A tool's parameters; what it does not know it refuses."""
+
+    model_config = ConfigDict(extra="forbid", populate_by_name=True, allow_inf_nan=False)
+
+
+class NoParameters(Parameters):
+    """Of a tool that needs none."""
+
+
+class ThresholdParameters(Parameters):
+    """The extraction's own settings; what is not given is as in the whole analysis."""
+
+    censoring_factor: float | None = Field(default=None, alias="a1", gt=0, le=100)
+    detection_factor: float | None = Field(default=None, alias="a2", gt=0, le=1000)
+    closing_px: int | None = Field(default=None, ge=0, le=99)
+    smallest_part_px: int | None = Field(default=None, ge=0, le=1_000_000)
+    sidelobe_level_db: float | None = Field(default=None, ge=-200, le=0)
+    corrects_edge: bool | None = None
+
+
+class CopyParameters(Parameters):
+    """Which frame's outline to copy."""
+
+    source: int = Field(alias="from")
+
+
+Chosen = TypeVar("Chosen", bound=Parameters)
+
+
+@dataclass(frozen=True, slots=True)
+class Tool(Generic[Chosen]):
+    """A tool: how its parameters are checked, and what it proposes."""
+
+    parameters: type[Chosen]
+    propose: Callable[[Question, Chosen], Proposal]
+
+    def proposal(self, parameters: dict[str, Any], question: Question) -> Proposal:
+        """Return what it proposes.
+
+        Raises:
+            ValueError: parameters that it does not take.
+        """
+        try:
+            chosen = self.parameters.model_validate(parameters)
+        except ValidationError as error:
+            first = error.errors()[0]
+            place = " → ".join(str(part) for part in first["loc"])
+            raise ValueError(f"The tool's parameters: {place}: {first['msg']}.") from error
+        return self.propose(question, chosen)
+
+
+def proposal(tool: str, parameters: dict[str, Any], question: Question) -> Proposal:
+    """Return what a tool proposes.
+
+    Raises:
+        ValueError: there is no such tool, or it refuses.
+    """
+    if tool not in TOOLS:
+        raise ValueError(f'There is no tool "{tool}" that proposes outlines, only: {_names()}.')
+    return TOOLS[tool].proposal(parameters, question)
+
+
+def reprojected_rings(snapshot: Snapshot, record: Record) -> tuple[Floats, ...]:
+    """Return the outline of the hull on show as a frame sees it, traced between its pixels."""
+    if snapshot.surface is None or snapshot.surface.is_empty:
+        return ()
+    frame = record.frame
+    mask = reprojected_mask(snapshot.surface, frame.projection, frame.shape)
+    return traced_rings(mask.astype(np.float32), 0.5) if mask.any() else ()
+
+
+def _threshold(question: Question, chosen: ThresholdParameters) -> Proposal:
+    given = {key: value for key, value in chosen.model_dump().items() if value is not None}
+    base = question.snapshot.settings.extraction
+    settings = ExtractionSettings(**{**_fields(base), **given})
+    found = extract_silhouette(question.record.analysed.received, settings)
+    note = "" if found.rings else "Nothing in this frame stands out at these settings."
+    return Proposal(rings=found.rings, claim=found.claim, note=note)
+
+
+def _fields(settings: ExtractionSettings) -> dict[str, Any]:
+    return {name: getattr(settings, name) for name in settings.__dataclass_fields__}
+
+
+def _copy(question: Question, chosen: CopyParameters) -> Proposal:
+    """Copy another frame's outline so that the target's origin stays under it."""
+    records = question.snapshot.records
+    if not 1 <= chosen.source <= len(records):
+        raise ValueError(
+            f"There is no frame {chosen.source} to copy from; {len(records)} have arrived so far."
+        )
+    other = records[chosen.source - 1]
+    origin = np.zeros(3)
+    shift = question.record.frame.projection.image_points(origin)
+    shift = shift - other.frame.projection.image_points(origin)
+    rings = tuple(ring + shift for ring in other.silhouette.rings)
+    return Proposal(
+        rings=rings,
+        claim=other.silhouette.claim,
+        note="" if rings else f"Frame {chosen.source} shows no target.",
+    )
+
+
+def _reprojection(question: Question, _: NoParameters) -> Proposal:
+    rings = reprojected_rings(question.snapshot, question.record)
+    return Proposal(
+        rings=rings,
+        claim="complete",
+        note="" if rings else "There is no hull to be seen in this frame.",
+    )
+
+
+TOOLS: dict[str, Tool[Any]] = {
+    "threshold": Tool(ThresholdParameters, _threshold),
+    "copy": Tool(CopyParameters, _copy),
+    "reprojection": Tool(NoParameters, _reprojection),
+}
+
+
+def _names() -> str:
+    return ", ".join(TOOLS)

@@ -1,0 +1,322 @@
+"""The mutable heart of the workstation: frames that arrive, outlines that change, one hull."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import get_args
+
+from core.analysis.frames import AnalysedFrame, ReviewState
+from core.analysis.history import EXTRACTION, Edit, History, Outlined
+from core.analysis.hull import Hull, hull_of
+from core.analysis.polling import bring_in_step
+from core.frame import Frame
+from core.geometry.grid import VoxelGrid
+from core.hull.surface import EMPTY_SURFACE, Surface
+from core.hull.volume import VoteVolume
+from core.reconstruction import ReconstructionSettings, ballot_of, vote_threshold
+from core.silhouettes.extraction import ExtractionSettings, extract_silhouette
+from core.silhouettes.silhouette import Silhouette
+
+PREVIEW_VOXELS = 96
+"""Along each side of the grid that previews are carved on."""
+
+
+class Analysis:
+    """Frames with their outlines, and the hull that follows every change of them.
+
+    After any sequence of operations the hull is, number by number, the one that the same frames
+    with the same outlines give from scratch. An operation that raises has changed nothing. Not
+    safe to share between threads without a lock of the owner's.
+    """
+
+    def __init__(
+        self,
+        settings: ReconstructionSettings | None = None,
+        *,
+        surface_of: Callable[[VoteVolume], Surface] = VoteVolume.surface,
+    ) -> None:
+        """Start without frames.
+
+        Args:
+            settings: what an analyst may choose.
+            surface_of: meshes the hull at the volume's threshold; by default exactly.
+
+        Raises:
+            ValueError: a grid too large.
+        """
+        self._settings = settings or ReconstructionSettings()
+        self._surface_of = surface_of
+        self._volume = VoteVolume(_grid(self._settings))
+        self._frames: list[AnalysedFrame] = []
+        self._earlier: list[AnalysedFrame] = []
+        self._journal: list[Edit] = []
+        self._coarse: VoteVolume | None = None
+        self._is_preview = False
+        self._revision = 0
+        self._shown: tuple[Hull, Surface] | None = None
+
+    @property
+    def settings(self) -> ReconstructionSettings:
+        """What the analyst has chosen."""
+        return self._settings
+
+    @property
+    def frames(self) -> tuple[AnalysedFrame, ...]:
+        """The frames received, in order."""
+        return tuple(self._frames)
+
+    @property
+    def journal(self) -> tuple[Edit, ...]:
+        """Every edit, oldest first; nothing is ever taken out."""
+        return tuple(self._journal)
+
+    @property
+    def volume(self) -> VoteVolume:
+        """The committed votes; frame n is view n − 1. To be read only."""
+        return self._volume
+
+    @property
+    def hull(self) -> Hull:
+        """The hull, or its preview, with all its numbers."""
+        return self._now()[0]
+
+    @property
+    def surface(self) -> Surface:
+        """The surface that the numbers of `hull` belong to."""
+        return self._now()[1]
+
+    def frame(self, number: int) -> AnalysedFrame:
+        """Return frame `number`, from 1.
+
+        Raises:
+            ValueError: there is none.
+        """
+        if not 1 <= number <= len(self._frames):
+            raise ValueError(
+                f"There is no frame {number}; {len(self._frames)} have arrived so far, from 1."
+            )
+        return self._frames[number - 1]
+
+    def receive(self, frame: Frame, silhouette: Silhouette | None = None) -> AnalysedFrame:
+        """Take one more frame in.
+
+        After a rewind, a frame takes up the outlines and the state that the frame of its number
+        had, if its image has the same shape.
+
+        Args:
+            frame: the next one.
+            silhouette: its extracted outline, where that has been done already.
+
+        Raises:
+            ValueError: a frame without contrast, or one that cannot vote.
+        """
+        number = len(self._frames) + 1
+        before = self._earlier[number - 1] if number <= len(self._earlier) else None
+        if before is not None and before.received.shape == frame.shape:
+            history, state = before.history, before.state
+        else:
+            extracted = silhouette or extract_silhouette(frame, self._settings.extraction)
+            history = History(outlines=(Outlined(silhouette=extracted, tool=EXTRACTION),))
+            state = "todo"
+        received = AnalysedFrame(
+            number=number,
+            received=frame,
+            history=history,
+            state=state,
+            ballot=ballot_of(frame, history.present.silhouette, self._settings),
+        )
+        self._adopt([*self._frames, received])
+        return received
+
+    def rewind(self) -> None:
+        """Take all frames out, to be received again; outlines, states and journal are kept."""
+        self._earlier[: len(self._frames)] = self._frames
+        self._volume = VoteVolume(self._volume.grid)
+        self._coarse = None
+        self._frames = []
+        self._changed()
+
+    def commit(
+        self,
+        number: int,
+        silhouette: Silhouette,
+        *,
+        tool: str,
+        base_revision: int,
+        repair: str = "",
+    ) -> AnalysedFrame:
+        """Give a frame another outline.
+
+        Args:
+            number: of the frame, from 1.
+            silhouette: drawn in it; an empty one shows no target and does not vote.
+            tool: that made it.
+            base_revision: of the outline that it was made from.
+            repair: what was repaired in it, for people.
+
+        Raises:
+            StaleRevision: the frame's outline has changed since `base_revision`.
+            ValueError: there is no such frame, or an outline that cannot vote.
+        """
+        history = self._based(number, base_revision)
+        outlined = Outlined(silhouette=silhouette, tool=tool, repair=repair)
+        return self._revise(number, history.committed(outlined), tool)
+
+    def undo(self, number: int, *, base_revision: int) -> AnalysedFrame:
+        """Take a frame's last edit back; no other frame changes.
+
+        Raises:
+            StaleRevision: the frame's outline has changed since `base_revision`.
+            NothingLeft: there is none.
+            ValueError: there is no such frame.
+        """
+        return self._revise(number, self._based(number, base_revision).undone(), "undo")
+
+    def redo(self, number: int, *, base_revision: int) -> AnalysedFrame:
+        """Do again the edit of a frame that was taken back last.
+
+        Raises:
+            StaleRevision: the frame's outline has changed since `base_revision`.
+            NothingLeft: there is none.
+            ValueError: there is no such frame.
+        """
+        return self._revise(number, self._based(number, base_revision).redone(), "redo")
+
+    def set_state(self, number: int, state: ReviewState) -> AnalysedFrame:
+        """Say how far the analyst is with a frame; an excluded one does not vote.
+
+        Raises:
+            ValueError: there is no such frame, or no such state.
+        """
+        if state not in get_args(ReviewState):
+            raise ValueError(
+                f'A frame is {", ".join(get_args(ReviewState))}; it cannot be "{state}".'
+            )
+        self._adopt(self._with(replace(self.frame(number), state=state)))
+        return self.frame(number)
+
+    def extract_again(
+        self, extraction: ExtractionSettings, *, overwrites_edited: bool = False
+    ) -> tuple[AnalysedFrame, ...]:
+        """Take the outlines of all frames from their images anew, as edits that can be undone.
+
+        Frames whose outline the analyst has edited keep it unless `overwrites_edited`.
+
+        Raises:
+            ValueError: a frame without contrast.
+        """
+        due = [f for f in self._frames if overwrites_edited or not f.history.is_edited]
+        found = [(f, extract_silhouette(f.received, extraction)) for f in due]
+        self._settings = replace(self._settings, extraction=extraction)
+        return tuple(
+            self._revise(
+                frame.number,
+                frame.history.committed(Outlined(silhouette=silhouette, tool=EXTRACTION)),
+                EXTRACTION,
+            )
+            for frame, silhouette in found
+        )
+
+    def set_carving(self, settings: ReconstructionSettings) -> None:
+        """Carve by other settings: threshold, rule, grid.
+
+        Raises:
+            ValueError: a grid too large, or one within which a camera stands.
+        """
+        if replace(self._settings, tolerated_misses=settings.tolerated_misses) == settings:
+            self._settings = settings
+            self._adopt(self._frames)
+            return
+        frames = [
+            replace(f, ballot=ballot_of(f.received, f.silhouette, settings)) for f in self._frames
+        ]
+        volume = VoteVolume(_grid(settings))
+        _carve(volume, frames, settings)
+        self._settings, self._volume, self._frames = settings, volume, frames
+        self._coarse = None
+        self._changed()
+
+    def preview(self, number: int, silhouette: Silhouette, *, base_revision: int) -> None:
+        """Show the hull, more coarsely, as it would be with another outline of a frame.
+
+        Nothing is committed: the next operation, or `end_preview`, brings the hull itself back.
+
+        Raises:
+            StaleRevision: the frame's outline has changed since `base_revision`.
+            ValueError: there is no such frame, or an outline that cannot vote.
+        """
+        self._based(number, base_revision)
+        drafted = self._with_outline(self.frame(number), silhouette)
+        if self._coarse is None:
+            self._coarse = VoteVolume(_coarse_grid(self._settings))
+        _carve(self._coarse, self._with(drafted), self._settings)
+        self._changed(is_preview=True)
+
+    def end_preview(self) -> None:
+        """Show the hull itself again."""
+        if self._is_preview:
+            self._changed()
+
+    def _based(self, number: int, base_revision: int) -> History:
+        history = self.frame(number).history
+        history.check(base_revision)
+        return history
+
+    def _revise(self, number: int, history: History, tool: str) -> AnalysedFrame:
+        """Let a frame's outline follow its history, and note that in the journal."""
+        before = self.frame(number)
+        after = self._with_outline(before, history.present.silhouette)
+        self._adopt(self._with(replace(after, history=history)))
+        self._journal.append(
+            Edit(
+                frame=number,
+                revision=history.revision,
+                tool=tool,
+                before=before.silhouette,
+                after=history.present.silhouette,
+            )
+        )
+        return self.frame(number)
+
+    def _with_outline(self, frame: AnalysedFrame, silhouette: Silhouette) -> AnalysedFrame:
+        return replace(frame, ballot=ballot_of(frame.received, silhouette, self._settings))
+
+    def _with(self, frame: AnalysedFrame) -> list[AnalysedFrame]:
+        """Return the frames with one in the place of its number."""
+        return [frame if f.number == frame.number else f for f in self._frames]
+
+    def _adopt(self, frames: list[AnalysedFrame]) -> None:
+        _carve(self._volume, frames, self._settings)
+        self._frames = frames
+        self._changed()
+
+    def _changed(self, *, is_preview: bool = False) -> None:
+        self._is_preview = is_preview
+        self._revision += 1
+        self._shown = None
+
+    def _now(self) -> tuple[Hull, Surface]:
+        """Return hull and surface, meshed and measured when first asked for."""
+        if self._shown is None:
+            is_preview = self._is_preview and self._coarse is not None
+            volume = self._coarse if is_preview and self._coarse is not None else self._volume
+            surface = self._surface_of(volume) if volume.view_count else EMPTY_SURFACE
+            hull = hull_of(volume, surface, revision=self._revision, is_preview=is_preview)
+            self._shown = hull, surface
+        return self._shown
+
+
+def _carve(
+    volume: VoteVolume, frames: Sequence[AnalysedFrame], settings: ReconstructionSettings
+) -> None:
+    places = [frame.place for frame in frames]
+    voting = sum(place.votes for place in places)
+    bring_in_step(volume, places, vote_threshold(voting, settings))
+
+
+def _grid(settings: ReconstructionSettings) -> VoxelGrid:
+    return VoxelGrid.cube(side_m=settings.side_m, spacing_m=settings.spacing_m)
+
+
+def _coarse_grid(settings: ReconstructionSettings) -> VoxelGrid:
+    spacing_m = max(settings.spacing_m, settings.side_m / PREVIEW_VOXELS)
+    return VoxelGrid.cube(side_m=settings.side_m, spacing_m=spacing_m)
