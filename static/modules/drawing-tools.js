@@ -1,6 +1,6 @@
 // Regions: polygon, lasso, brush, eraser, and a line along the edge.
 
-import { between, combined, thinned } from "./rings.js";
+import { between, brushed, combined, thinned } from "./rings.js";
 import { propose } from "./server.js";
 
 const CLOSE_PX = 9;
@@ -100,7 +100,7 @@ export function livewireTool(editor) {
   }
 }
 
-/** Paint with a disc, or rub out; the server traces the painted region's edge. */
+/** Paint with a disc, or rub out; what the stroke does not touch stays to the last digit. */
 export function brushTool(editor, isAdding) {
   const { view, scene, session } = editor;
   return {
@@ -119,20 +119,12 @@ export function brushTool(editor, isAdding) {
       }
       scene.brush = { points, centre, radius: editor.brushRadius, isAdding };
     },
-    async up() {
+    up() {
       const points = scene.brush?.points ?? [];
       if (points.length === 0) return;
-      const { number } = session.frame;
-      try {
-        const parameters = { points, radius_px: editor.brushRadius, add: isAdding };
-        const found = await propose(number, "brush", parameters, session.rings);
-        if (session.frame?.number === number) session.commit(found.rings, "brush");
-      } catch (error) {
-        editor.complain(error.message);
-      }
-      // A next stroke may have begun meanwhile.
-      if (scene.brush?.points === points) scene.brush.points = [];
-      editor.redraw();
+      scene.brush.points = [];
+      const { rings } = session;
+      keep(editor, () => brushed(rings, points, editor.brushRadius, isAdding), this.name);
     },
     cancel() {
       const isPainting = (scene.brush?.points.length ?? 0) > 0;
@@ -161,10 +153,20 @@ function finish(editor, tool) {
   const points = thinned(scene.draft.points, 1e-3);
   scene.draft = null;
   if (points.length > 2) {
-    session.commit(combined(session.rings, points, editor.combining), tool);
+    keep(editor, () => combined(session.rings, points, editor.combining), tool);
   }
   editor.redraw();
   return true;
+}
+
+/** Commit the rings that `make` gives, or say that it found none. */
+function keep(editor, make, tool) {
+  try {
+    editor.session.commit(make(), tool);
+  } catch {
+    // The library gives up on some outlines that touch themselves.
+    editor.complain("This stroke and the outline could not be joined; draw it a little differently.");
+  }
 }
 
 function cancelDraft(editor) {

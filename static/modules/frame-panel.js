@@ -15,6 +15,8 @@ export class FramePanel {
   session;
   /** What is drawn over the picture. */
   scene = { rings: null, cursor: null, isHidden: false };
+  /** Called whenever another part of the frame is on show. */
+  onMoved = () => {};
   #overlay = new Overlay(part("overlay-canvas"));
   #onChange;
   #drawing = 0;
@@ -30,6 +32,7 @@ export class FramePanel {
     this.view = new FrameView(part("frame-canvas"), showReading, (plot) => {
       this.#overlay.setPlot(plot);
       this.redraw();
+      this.onMoved();
     });
     this.session = new Session(() => this.#show(), onComplaint);
   }

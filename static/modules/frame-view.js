@@ -28,6 +28,11 @@ export class FrameView {
     new ResizeObserver(() => this.#draw()).observe(canvas);
   }
 
+  /** Whether somebody zoomed or moved away from what fits. */
+  get isFree() {
+    return this.#part !== null;
+  }
+
   get hasFrame() {
     return this.#frame !== null && this.#levels !== null;
   }

@@ -275,10 +275,11 @@ function escape() {
 }
 
 const chooseTool = (name) => () => {
+  if (document.querySelector(`[data-tool=${name}]`).hidden) return;
   proposals.discard();
   editor.choose(name);
 };
-const tools = ["vertex", "polygon", "lasso", "brush", "eraser", "livewire"];
+const drawing = ["vertex", "polygon", "lasso", "brush", "eraser", "livewire"];
 const proposing = ["threshold", "grow", "snap", "copy previous", "copy next", "reprojection"];
 const reviewing = ["todo", "ok", "fix"];
 const named = (names, make) => Object.fromEntries(names.map((name) => [name, make(name)]));
@@ -286,7 +287,7 @@ const named = (names, make) => Object.fromEntries(names.map((name) => [name, mak
 toolbar.onTool((name) => chooseTool(name)());
 bindShortcuts(
   {
-    ...named(tools, chooseTool),
+    ...named(drawing, chooseTool),
     ...named(proposing, (key) => () => proposals.choose(key)),
     ...named(reviewing, (name) => () => review.set(name)),
     delete: () => editor.remove(),
@@ -324,6 +325,8 @@ resizablePanes(document.querySelector("main"), {
   first: part("separator-first"),
   third: part("separator-third"),
 });
-await toolbar.chooseColours();
+const [tools] = await Promise.all([getJson("/api/tools"), toolbar.chooseColours()]);
+proposals.offer(tools);
+toolbar.offer(tools);
 toolbar.update();
 keepLinked(showState, showLink);

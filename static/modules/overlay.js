@@ -18,8 +18,8 @@ export const COLOURS = {
   dark: "#0b0e14",
 };
 
-const SPARSE_PX = 9;
-const NEAR_PX = 80;
+const SPARSE_PX = 18;
+const NEAR_PX = 70;
 const MIDDLE_FROM_PX = 22;
 const FONT = '600 12px system-ui, "Segoe UI", "Helvetica Neue", "Noto Sans", "DejaVu Sans", sans-serif';
 

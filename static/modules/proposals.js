@@ -59,6 +59,7 @@ export class Proposals {
   #tool = null;
   #seed = null;
   #found = null;
+  #offered = [];
   #asking = new Latest(() => this.#ask(), 30);
 
   /** Propose for `session`; `hooks.show(rings or null)`, `hooks.frames()`, `hooks.open()`, `hooks.seeding(bool)`. */
@@ -66,9 +67,14 @@ export class Proposals {
     this.#parts = parts;
     this.#session = session;
     this.#hooks = hooks;
-    parts.list.append(...TOOLS.map((tool) => this.#button(tool)));
     parts.apply.addEventListener("click", () => this.apply());
     parts.discard.addEventListener("click", () => this.discard());
+  }
+
+  /** Offer the tools that the server has. */
+  offer(known) {
+    this.#offered = TOOLS.filter(({ name }) => known.includes(name));
+    this.#parts.list.replaceChildren(...this.#offered.map((tool) => this.#button(tool)));
   }
 
   get isOpen() {
@@ -78,7 +84,8 @@ export class Proposals {
   /** Choose a tool by its key and ask for what it proposes. */
   choose(key) {
     if (!this.#session.isEditable) return;
-    const tool = TOOLS.find((each) => keyOf(each) === key);
+    const tool = this.#offered.find((each) => keyOf(each) === key);
+    if (!tool) return;
     const isSameTool = tool === this.#tool;
     this.#forget();
     this.#tool = tool;

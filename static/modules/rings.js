@@ -3,6 +3,7 @@
 import "../vendor/polygon-clipping.js";
 
 const { union, difference } = globalThis.polygonClipping;
+const DISC_VERTICES = 24;
 
 /** Rings whose vertices can be moved without touching the original. */
 export function copied(rings) {
@@ -84,6 +85,40 @@ export function combined(rings, ring, how) {
   if (how === "replace" || (how === "add" && rings.length === 0)) return cleaned(union([ring]));
   const whole = evenOdd(rings);
   return cleaned(how === "add" ? union(whole, [ring]) : difference(whole, [ring]));
+}
+
+/** Rings with all places within `radius` of a stroke's points added or cut out. */
+export function brushed(rings, points, radius, isAdding) {
+  const discs = thinned(points, radius / 4).map((point) => disc(point, radius));
+  const pieces = discs.map((ring, index) => [convexHull([...ring, ...(discs[index + 1] ?? [])])]);
+  const stroke = union(...pieces);
+  if (isAdding && rings.length === 0) return cleaned(stroke);
+  return cleaned((isAdding ? union : difference)(evenOdd(rings), stroke));
+}
+
+function disc([row, column], radius) {
+  return Array.from({ length: DISC_VERTICES }, (_, index) => {
+    const angle = (2 * Math.PI * index) / DISC_VERTICES;
+    return [row + radius * Math.sin(angle), column + radius * Math.cos(angle)];
+  });
+}
+
+/** The convex hull of points, by Andrew's monotone chain (1979). */
+function convexHull(points) {
+  const sorted = points.toSorted((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const chain = (sequence) => {
+    const kept = [];
+    for (const point of sequence) {
+      while (kept.length > 1 && turn(kept.at(-2), kept.at(-1), point) <= 0) kept.pop();
+      kept.push(point);
+    }
+    return kept.slice(0, -1);
+  };
+  return [...chain(sorted), ...chain(sorted.toReversed())];
+}
+
+function turn(a, b, c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
 /** Rings, of which holes are counted inside by the even-odd rule, as a multipolygon. */

@@ -11,6 +11,7 @@ export class Toolbar {
   #editor;
   #windowM;
   #colours = new Map();
+  #fitsTarget = true;
 
   /** Control `panel` and `editor`; `windowM()` is the side that fits the target, in metres. */
   constructor(panel, editor, windowM) {
@@ -18,6 +19,7 @@ export class Toolbar {
     this.#editor = editor;
     this.#windowM = windowM;
     const { session } = panel;
+    panel.onMoved = () => this.#tellFit();
     part("undo").addEventListener("click", () => session.undo());
     part("redo").addEventListener("click", () => session.redo());
     part("claim").addEventListener("click", () => this.toggleClaim());
@@ -38,6 +40,13 @@ export class Toolbar {
   onTool(choose) {
     for (const button of this.#toolButtons()) {
       button.addEventListener("click", () => choose(button.dataset.tool));
+    }
+  }
+
+  /** Offer the tools that need the server only where it has them. */
+  offer(known) {
+    for (const button of this.#toolButtons()) {
+      button.hidden = button.dataset.tool === "livewire" && !known.includes("livewire");
     }
   }
 
@@ -75,21 +84,26 @@ export class Toolbar {
 
   /** Fit the target or the whole frame. */
   fit(isTarget) {
-    part("zoom-target").ariaPressed = String(isTarget);
-    part("zoom-whole").ariaPressed = String(!isTarget);
+    this.#fitsTarget = isTarget;
     this.#panel.view.fit(isTarget ? this.#windowM() : null);
+    this.#tellFit();
   }
 
   /** Keep to the choice between target and whole for the next frame, and to a chosen part. */
   keepWindow() {
-    const isTarget = part("zoom-target").ariaPressed === "true";
-    this.#panel.view.setWindow(isTarget ? this.#windowM() : null);
+    this.#panel.view.setWindow(this.#fitsTarget ? this.#windowM() : null);
   }
 
   async chooseColours() {
     const name = part("colours").value;
     if (!this.#colours.has(name)) this.#colours.set(name, await getJson(`/api/colours?name=${name}`));
     if (part("colours").value === name) this.#panel.view.setColours(this.#colours.get(name));
+  }
+
+  #tellFit() {
+    const { isFree } = this.#panel.view;
+    part("zoom-target").ariaPressed = String(this.#fitsTarget && !isFree);
+    part("zoom-whole").ariaPressed = String(!this.#fitsTarget && !isFree);
   }
 
   #setBrush(radius) {
