@@ -125,6 +125,7 @@ export class FramePanel {
   #show() {
     const { frame } = this.session;
     part("frame-stamp").textContent = frame ? frameStamp(frame) : "";
+    part("frame-stamp").title = part("frame-stamp").textContent;
     showNote(part("frame-note"), frame ? noteOf(frame) : "");
     if (frame) showRows(part("frame-facts"), frameRows(frame));
     else part("frame-facts").replaceChildren();

@@ -202,6 +202,8 @@ async function fetchFrame(key) {
 function showEditing() {
   toolbar?.update();
   showBanner();
+  // News that came while somebody was drawing has waited.
+  if (state) bringFrame();
 }
 
 function showProposal(rings) {
@@ -214,7 +216,8 @@ function showBanner() {
   const { conflict } = session;
   if (linkWasLost) banner.show(lost);
   else if (conflict) {
-    banner.show(`${conflict.sentence} Your outline is the dashed one.`, [
+    const what = `Frame ${conflict.number} was changed on another page meanwhile.`;
+    banner.show(`${what} Its outline is on show, yours is the dashed one.`, [
       ["Keep mine", () => session.keepMine()],
       ["Take theirs", () => session.keepTheirs()],
     ]);

@@ -171,13 +171,13 @@ export class Session {
       return await send("PUT", `/api/frames/${number}/silhouette`, body);
     } catch (error) {
       if (error.status !== 409) throw error;
-      return this.#lose({ number, ...body }, error.message);
+      return this.#lose({ number, ...body });
     }
   }
 
-  async #lose(mine, sentence) {
+  async #lose(mine) {
     const theirs = await getJson(`/api/frames/${mine.number}`);
-    if (this.frame?.number === mine.number) this.conflict = { ...mine, sentence };
+    if (this.frame?.number === mine.number) this.conflict = mine;
     return theirs;
   }
 

@@ -66,6 +66,7 @@ export class Toolbar {
     part("overlay").ariaPressed = String(wantsHull);
     part("overlay-legend").hidden = !wantsHull;
     part("brush-size-label").hidden = !["brush", "eraser", "vertex"].includes(tool);
+    part("brush-size-name").textContent = tool === "vertex" ? "Reach" : "Size";
     part("combining-label").hidden = !["polygon", "lasso", "livewire"].includes(tool);
     part("frame-canvas").dataset.revision = silhouette?.revision ?? "";
     part("frame-canvas").dataset.saving = String(session.isSaving);
