@@ -52,7 +52,7 @@ def readstate_of(stream: Stream) -> dict[str, Any]:
 
 @router.get("/colours")
 def read_colours(name: ColourName = "magma") -> list[list[int]]:
-    """Return the 256 RGB colours of frame pictures, from the darkest level shown to the brightest."""
+    """Return the 256 RGB colours of frame pictures, from the lowest level shown to the highest."""
     table: list[list[int]] = colour_table(name).tolist()
     return table
 

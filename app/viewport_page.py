@@ -25,7 +25,8 @@ _STYLE = """<style>
 html, body { background: #0b0e14 !important; }
 #root * { background-color: transparent !important; }
 </style>"""
-"""Hides viser's control panel, which a narrow window fixes to its foot, and notices, whose place our page takes, and shows our ground."""
+"""Hides viser's control panel, which a narrow window fixes to its foot, and its notices, whose
+place our page takes, and shows our ground."""
 
 
 _QUIET = """

@@ -5,12 +5,14 @@ import { Carving } from "./carving.js";
 import { Editor } from "./editor.js";
 import { FramePanel } from "./frame-panel.js";
 import { showHull } from "./hull-view.js";
-import { frames } from "./numbers.js";
 import { resizablePanes } from "./panes.js";
 import { Proposals } from "./proposals.js";
 import { Review } from "./review.js";
 import { getJson, keepLinked, send } from "./server.js";
 import { bindShortcuts, fillSheet } from "./shortcuts.js";
+import { listenInSpace } from "./space-keys.js";
+import { showSource } from "./source-view.js";
+import { Tabs } from "./tabs.js";
 import { Toolbar } from "./toolbar.js";
 import { Transport } from "./transport.js";
 
@@ -23,6 +25,7 @@ let isFetching = false;
 let linkWasLost = false;
 let complaint = "";
 
+const tabs = new Tabs(document.querySelectorAll("[role=tab]"));
 const banner = new Banner(part("banner"));
 const panel = new FramePanel(showEditing, complain);
 const { session, view, scene } = panel;
@@ -46,7 +49,7 @@ const proposals = new Proposals(
   session,
   {
     show: showProposal,
-    open: () => openTab("tools"),
+    open: () => tabs.open("tools"),
     seeding: (isSeeding) => {
       if (isSeeding !== (editor.toolName === "grow")) editor.choose(isSeeding ? "grow" : "vertex");
     },
@@ -123,13 +126,7 @@ function showState(next) {
   if (next.serial < newestSerial) return;
   newestSerial = next.serial;
   state = next;
-  part("source-name").textContent = state.source.name;
-  part("source-description").textContent = state.source.description;
-  part("source").title = state.source.description;
-  document.title = `${state.source.name} – radarhull`;
-  part("status").textContent = statusText();
-  part("status").dataset.status = state.status;
-  showProgress();
+  showSource(state);
   showHull(state);
   showBanner();
   carving.update(state);
@@ -137,27 +134,6 @@ function showState(next) {
   transport.update(state);
   panel.bringOverlays(state.hull?.revision);
   bringFrame();
-}
-
-function statusText() {
-  const { status, source } = state;
-  const total = source.expected_frames;
-  const place = total === null ? `frame ${state.frames}` : `frame ${state.frames} of ${total}`;
-  return {
-    preparing: `Preparing ${source.name}…`,
-    playing: `Imaging ${place}`,
-    paused: state.frames === 0 ? "Paused before the first frame" : `Paused at ${place}`,
-    finished: `All ${frames(state.frames)} received`,
-    failed: state.frames === 0 ? "Failed before the first frame" : `Failed after ${place}`,
-  }[status];
-}
-
-function showProgress() {
-  const bar = part("progress");
-  const total = state.source.expected_frames;
-  bar.hidden = total === null;
-  if (state.status === "preparing") bar.removeAttribute("value");
-  else if (total !== null) bar.value = state.frames / total;
 }
 
 /** Fetch and show the frame that the state names; one at a time, always ending at the latest. */
@@ -198,7 +174,6 @@ async function fetchFrame(key) {
   panel.take(...answer);
 }
 
-/** Show what can be done with the outline as it is. */
 function showEditing() {
   toolbar?.update();
   showBanner();
@@ -216,8 +191,10 @@ function showBanner() {
   const { conflict } = session;
   if (linkWasLost) banner.show(lost);
   else if (conflict) {
-    const what = `Frame ${conflict.number} was changed on another page meanwhile.`;
-    banner.show(`${what} Its outline is on show, yours is the dashed one.`, [
+    const what = conflict.isUnsaved
+      ? `Your outline of frame ${conflict.number} was not saved: the server did not answer.`
+      : `Frame ${conflict.number} was changed on another page meanwhile.`;
+    banner.show(`${what} The kept outline is on show, yours is the dashed one.`, [
       ["Keep mine", () => session.keepMine()],
       ["Take theirs", () => session.keepTheirs()],
     ]);
@@ -237,26 +214,6 @@ function showLink(link) {
   }
   linkWasLost = link === "lost";
   showBanner();
-}
-
-function openTab(name) {
-  for (const tab of document.querySelectorAll("[role=tab]")) {
-    const isOpen = tab.dataset.tab === name;
-    tab.ariaSelected = String(isOpen);
-    tab.tabIndex = isOpen ? 0 : -1;
-    part(tab.getAttribute("aria-controls")).hidden = !isOpen;
-  }
-}
-
-for (const tab of document.querySelectorAll("[role=tab]")) {
-  tab.addEventListener("click", () => openTab(tab.dataset.tab));
-  tab.addEventListener("keydown", (event) => {
-    if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
-    event.stopPropagation();
-    const other = document.querySelector(`[role=tab]:not([data-tab=${tab.dataset.tab}])`);
-    openTab(other.dataset.tab);
-    other.focus();
-  });
 }
 
 function openSheet() {
@@ -316,13 +273,17 @@ bindShortcuts(
     panel.redraw();
   },
 );
+// A button that was pressed with the pointer leaves the keys to the picture.
+document.addEventListener("click", (event) => {
+  if (event.detail > 0 && event.target.closest(".frame button, .tool-list button")) {
+    part("frame-canvas").focus({ preventScroll: true });
+  }
+});
 fillSheet(part("sheet-groups"));
 part("open-sheet").addEventListener("click", openSheet);
-part("viewport").addEventListener("load", () => {
-  transport.listenIn(part("viewport"));
-  part("viewport").contentWindow?.addEventListener("keydown", (event) => {
-    if (event.key === "Escape") part("frame-canvas").focus();
-  });
+listenInSpace(part("viewport"), (event) => {
+  if (event.key === "Escape") part("frame-canvas").focus();
+  else transport.onKeyInSpace(event);
 });
 resizablePanes(document.querySelector("main"), {
   first: part("separator-first"),

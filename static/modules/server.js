@@ -60,7 +60,9 @@ export function keepLinked(onState, onLink) {
 }
 
 async function answered(path, options) {
-  const response = await fetch(path, options);
+  const response = await fetch(path, options).catch(() => {
+    throw new Error("The server does not answer; is it still running?");
+  });
   if (response.ok) return response;
   const { detail } = await response.json().catch(() => ({}));
   const error = new Error(detail ?? `The server answered ${response.status} to ${path}.`);

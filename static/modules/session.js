@@ -12,7 +12,7 @@ export class Session {
   claim = "lit side";
   /** Whether somebody is drawing, so that news from the server must wait. */
   isBusy = false;
-  /** The outline that lost to another page's, until it is kept or given up. */
+  /** The outline that lost to another page's, or was not saved, until it is kept or given up. */
   conflict = null;
   #revisions = new Map();
   #pending = 0;
@@ -38,7 +38,7 @@ export class Session {
 
   /** Take a frame as the server gives it. */
   adopt(frame) {
-    if (this.frame?.number !== frame.number) this.conflict = null;
+    if (this.frame && this.frame.number !== frame.number) this.conflict = null;
     this.frame = frame;
     this.rings = copied(frame.silhouette.rings);
     this.claim = frame.silhouette.claim;
@@ -170,6 +170,10 @@ export class Session {
     try {
       return await send("PUT", `/api/frames/${number}/silhouette`, body);
     } catch (error) {
+      if (error.status === undefined) {
+        this.conflict = { number, ...body, isUnsaved: true };
+        return undefined;
+      }
       if (error.status !== 409) throw error;
       return this.#lose({ number, ...body });
     }

@@ -49,13 +49,11 @@ export class Transport {
     this.#updateCells(state);
   }
 
-  /** Space in the viewport's frame plays and pauses too; its other keys move the camera. */
-  listenIn(frame) {
-    frame.contentWindow?.addEventListener("keydown", (event) => {
-      if (event.code !== "Space" || event.repeat) return;
-      event.preventDefault();
-      this.#togglePlay();
-    });
+  /** Space in the view in space plays and pauses too; its other keys move the camera. */
+  onKeyInSpace(event) {
+    if (event.code !== "Space" || event.repeat) return;
+    event.preventDefault();
+    this.#togglePlay();
   }
 
   #togglePlay() {

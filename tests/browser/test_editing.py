@@ -2,12 +2,13 @@
 
 import re
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from app.source import Source
 from core.silhouettes.silhouette import clockwise_area_px
@@ -95,10 +96,10 @@ def press_at(page: Page, *pixels: tuple[float, float]) -> None:
     page.mouse.up()
 
 
-def put_square(page: Page, number: int) -> Rings:
-    """Give a frame a square of 40 px for its outline, over the interface."""
+def put_square(page: Page, number: int, low: float = 60.0, high: float = 100.0) -> Rings:
+    """Give the frame on show a square for its outline, over the interface."""
     silhouette = frame_facts(page, number)["silhouette"]
-    square = [[[60.0, 60.0], [60.0, 100.0], [100.0, 100.0], [100.0, 60.0]]]
+    square = [[[low, low], [low, high], [high, high], [high, low]]]
     body = {
         "rings": square,
         "claim": silhouette["claim"],
@@ -463,14 +464,87 @@ def serious_violations(page: Page) -> list[tuple[str, str]]:
 
 
 def test_the_disagreement_of_hull_and_outline_is_painted_and_hidden(editing) -> None:
-    page = editing()
-    put_square(page, 3)
+    page = editing(6)
+    put_square(page, 6, 45.0, 115.0)
     green = [95, 214, 138]
     assert page.evaluate(PAINTED, green) == 0
     page.keyboard.press("r")
-    # The other two views leave no hull in the square's corners.
-    page.wait_for_function(f"(colour) => ({PAINTED})(colour) > 500", arg=green)
+    wait_until(page, lambda: page.evaluate(PAINTED, green) > 500)
     page.keyboard.down("h")
-    page.wait_for_function(f"(colour) => ({PAINTED})(colour) === 0", arg=green)
+    wait_until(page, lambda: page.evaluate(PAINTED, green) == 0)
     page.keyboard.up("h")
-    page.wait_for_function(f"(colour) => ({PAINTED})(colour) > 500", arg=green)
+    wait_until(page, lambda: page.evaluate(PAINTED, green) > 500)
+
+
+def wait_until(page: Page, holds: Callable[[], bool]) -> None:
+    for _ in range(100):
+        if holds():
+            return
+        page.wait_for_timeout(100)
+    pytest.fail("waited ten seconds in vain")
+
+
+def test_escape_gives_the_keys_back_from_the_view_in_space(editing) -> None:
+    page = editing(1)
+    page.locator("#viewport").evaluate("(frame) => frame.contentWindow.focus()")
+    assert page.evaluate("document.activeElement.id") == "viewport"
+    page.keyboard.press("Escape")
+    assert page.evaluate("document.activeElement.id") == "frame-canvas"
+
+
+def test_an_outline_that_the_server_did_not_take_is_not_lost(editing) -> None:
+    page = editing()
+    put_square(page, 3)
+    page.route("**/silhouette", lambda route: route.abort())
+    press_at(page, (60, 60), (50, 50))
+    expect(page.get_by_role("alert").first).to_contain_text("was not saved")
+    page.unroute("**/silhouette")
+    page.get_by_role("button", name="Keep mine").click()
+    wait_for_revision(page, 2)
+    assert near(rings_of(page, 3), 50, 50)
+
+
+def test_a_wire_follows_what_the_server_finds_and_a_seed_grows(visit) -> None:
+    """The page's side of tools that a server may have: it asks as agreed, and draws the answer."""
+    asked = []
+
+    def answer(route: Route) -> None:
+        order = route.request.post_data_json
+        asked.append(order)
+        points = order["parameters"].get("points", [])
+        # A bend in the middle between each two points.
+        path = [
+            place
+            for first, second in pairwise(points)
+            for place in (first, [(a + b) / 2 + 1 for a, b in zip(first, second, strict=True)])
+        ]
+        grown = [[[60, 60], [60, 90], [90, 90], [90, 60]]]
+        found = {"rings": grown, "claim": "lit side", "note": "", "path": path + points[-1:]}
+        route.fulfill(json=found)
+
+    page = visit(source(2), playing=True).page
+    page.route("**/api/tools", lambda route: route.fulfill(json=["livewire", "grow"]))
+    page.route("**/proposals", answer)
+    page.reload()
+    expect(page.locator("#frame-canvas")).to_have_attribute("data-frame", "2")
+    put_square(page, 2)
+    page.keyboard.press("w")
+    page.locator("#combining").select_option("replace")
+    for corner in [(40, 40), (40, 70), (70, 70)]:
+        page.mouse.click(*place(page, *corner))
+        page.wait_for_timeout(100)
+    page.mouse.click(*place(page, 40, 40))
+    wait_for_revision(page, 2)
+    assert len(rings_of(page, 2)[0]) == 6
+    assert near(rings_of(page, 2), 56, 71)
+    page.keyboard.press("i")
+    page.mouse.click(*place(page, 75, 75))
+    expect(page.locator("#tool-hint")).to_contain_text("Proposes 4 vertices")
+    assert asked[-1]["parameters"] == {
+        "tolerance_db": 8,
+        "row": pytest.approx(75, abs=0.3),
+        "column": pytest.approx(75, abs=0.3),
+    }
+    page.keyboard.press("Enter")
+    wait_for_revision(page, 3)
+    assert near(rings_of(page, 2), 90, 90, within=1e-3)
