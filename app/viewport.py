@@ -116,6 +116,7 @@ class Viewport:
                 self._show_frame(shown)
             elif shown is not None and hull_is_new:
                 self._show_picture(shown)
+        self._server.flush()  # viser else gathers messages for a sixtieth of a second
 
     def _resize(self, side_m: float) -> None:
         self._side_m = side_m

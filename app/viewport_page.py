@@ -39,7 +39,13 @@ addEventListener("unhandledrejection", (event) => {
 _PACE = """
 const native = requestAnimationFrame.bind(window), cancel = cancelAnimationFrame.bind(window);
 const waiting = new Map();
-let drawn = 0, touched = 0, tickets = 0;
+let drawn = 0, touched = 0, changed = 0, tickets = 0;
+window.Worker = class extends Worker {
+  constructor(...given) {
+    super(...given);
+    this.addEventListener("message", () => { changed = performance.now(); });
+  }
+};
 for (const kind of ["pointerdown", "pointermove", "wheel", "keydown"]) {
   addEventListener(kind, (event) => {
     if (kind !== "pointermove" || event.buttons) touched = event.timeStamp;
@@ -48,7 +54,8 @@ for (const kind of ["pointerdown", "pointermove", "wheel", "keydown"]) {
 window.requestAnimationFrame = (callback) => {
   const ticket = ++tickets;
   const attempt = (now) => {
-    const due = now === drawn || now - touched < 1500 || now - drawn >= 120;
+    const fresh = now - touched < 1500 || now - changed < 100;
+    const due = now === drawn || fresh || now - drawn >= 120;
     if (!due) return waiting.set(ticket, native(attempt));
     waiting.delete(ticket);
     drawn = now;
@@ -62,8 +69,9 @@ window.cancelAnimationFrame = (ticket) => {
   waiting.delete(ticket);
 };
 """
-"""Draws eight times a second unless somebody turns the view: viser draws all the time, which
-without a graphics card takes a whole core from the reconstruction."""
+"""Draws eight times a second unless somebody turns the view or the scene has just changed: viser
+draws all the time, which without a graphics card takes a whole core from the reconstruction. Its
+worker hands over what the server sends, and a hull that follows an edit is drawn at once."""
 
 _SCRIPT = f"{_QUIET}(() => {{{_PACE}}})();"
 

@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 
 import tyro
 
+from app import loop_benchmark as loop
 from app.commands.console import Report, progress_bars
 from app.commands.options import JsonTo, OptionalInt, checked_seed
 from app.commands.outputs import checked_json, show_results
@@ -21,7 +22,9 @@ Sizes = Sequence[tuple[int, int]]
 
 
 def bench(
-    name: Annotated[Literal["carve", "edit", "growth", "surface", "image"], tyro.conf.Positional],
+    name: Annotated[
+        Literal["carve", "edit", "growth", "surface", "image", "loop"], tyro.conf.Positional
+    ],
     /,
     *,
     sizes: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NxVIEWS", help_behavior_hint="")] = (),
@@ -35,13 +38,14 @@ def bench(
     carve: all votes, against every peer that is installed and against the exact votes. edit: from
     a dragged vertex or a new outline to the exact mesh. growth: time and memory against voxels,
     views and vertices. surface: error against the true hull. image: from the demo's echoes to its
-    60 frames, against back-projection and plain NumPy. Peers come with the extra "bench".
+    60 frames, against back-projection and plain NumPy. loop: from a committed outline to the hull
+    at a client of the running workstation's viewport. Peers come with the extra "bench".
 
     Args:
         name: what to measure.
         sizes: voxels a side and views, as 256x60; the benchmark's own by default.
-        repeats: runs (carve, growth, image) or edits (edit) of each kind; the benchmark's own by
-            default.
+        repeats: runs (carve, growth, image) or edits (edit, loop) of each kind; the benchmark's own
+            by default.
         json: write settings and figures as JSON to this file, or to standard output for "-".
         out: folder for plots (growth).
         seed: of views, edits and echoes.
@@ -73,6 +77,10 @@ def _run(
         )
     if name == "image":
         return run_image(repeats=repeats or 3, seed=seed, progress=report)
+    if name == "loop":
+        return loop.run_loop(
+            sizes=sizes or loop.SIZES, edits=repeats or loop.EDITS, seed=seed, progress=report
+        )
     if name == "surface":
         return _surface(sizes, seed, report)
     return _growth(sizes, repeats or 5, out, seed, report)
