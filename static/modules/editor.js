@@ -22,7 +22,7 @@ export class Editor {
   #hasPanned = false;
   #isDown = false;
 
-  /** Edit `session`'s outline with the pointer on `canvas`; `hooks` redraw, complain, onTool. */
+  /** Edit `session`'s outline with the pointer on `canvas`; `hooks` tell the page. */
   constructor(canvas, view, session, scene, hooks) {
     Object.assign(this, { session, view, scene });
     this.#canvas = canvas;
@@ -139,6 +139,7 @@ export class Editor {
     const isUsable = event.button === 0 && this.session.isEditable && !this.scene.proposal;
     const isSeeding = event.button === 0 && this.#tool.name === "grow";
     if (!(isUsable || isSeeding) || !isInside(this.view.plot(), ...place)) return;
+    this.#hooks.onStart();
     if (this.#tool.down(event, place) === true) {
       this.#isDown = true;
       this.session.isBusy = true;

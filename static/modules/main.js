@@ -32,6 +32,7 @@ const { session, view, scene } = panel;
 const editor = new Editor(part("frame-canvas"), view, session, scene, {
   redraw: () => panel.redraw(),
   complain,
+  onStart: stay,
   onTool: () => toolbar?.update(),
   onSeed: (row, column) => proposals.seed(row, column),
 });
@@ -49,7 +50,10 @@ const proposals = new Proposals(
   session,
   {
     show: showProposal,
-    open: () => tabs.open("tools"),
+    open: () => {
+      tabs.open("tools");
+      stay();
+    },
     seeding: (isSeeding) => {
       if (isSeeding !== (editor.toolName === "grow")) editor.choose(isSeeding ? "grow" : "vertex");
     },
@@ -110,6 +114,13 @@ function showFrame(number) {
   return command("POST", "/api/shown", { frame: number === state.frames ? null : number });
 }
 
+/** Stay with the frame that somebody edits while others arrive. */
+function stay() {
+  if (state?.following && state.status === "playing") {
+    command("POST", "/api/shown", { frame: session.frame.number });
+  }
+}
+
 async function excludeAll(numbers) {
   for (const number of numbers) {
     await command("PUT", `/api/frames/${number}/state`, { state: "excluded" });
@@ -138,7 +149,7 @@ function showState(next) {
 
 /** Fetch and show the frame that the state names; one at a time, always ending at the latest. */
 async function bringFrame() {
-  if (isFetching) return;
+  if (isFetching || session.isBusy) return;
   isFetching = true;
   try {
     while (state.shown !== null && frameOnShow !== frameKey()) await fetchFrame(frameKey());

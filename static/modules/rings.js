@@ -142,7 +142,7 @@ export function clockwiseArea(ring) {
   }, 0);
 }
 
-/** Points at least `step` frame pixels apart, the last one kept. */
+/** Points, without those nearer than `step` frame pixels to the one before. */
 export function thinned(points, step) {
   const kept = [points[0]];
   for (const point of points.slice(1)) if (between(point, kept.at(-1)) >= step) kept.push(point);

@@ -157,6 +157,22 @@ def test_the_hull_previews_a_drag_and_escape_takes_it_back(editing) -> None:
     assert frame_facts(page, 3)["silhouette"]["revision"] == 1
 
 
+def test_a_frame_that_arrives_does_not_end_a_drag(visit) -> None:
+    page = visit(source(2)).page
+    page.get_by_role("button", name="Step").click()
+    expect(page.locator("#frame-canvas")).to_have_attribute("data-frame", "1")
+    put_square(page, 1)
+    page.mouse.move(*place(page, 60, 60))
+    page.mouse.down()
+    page.mouse.move(*place(page, 55, 55), steps=2)
+    page.request.post(f"{origin(page)}/api/playback", data={"action": "step"})
+    expect(page.locator("#status")).to_have_text("All 2 frames received")
+    page.mouse.move(*place(page, 50, 50), steps=2)
+    page.mouse.up()
+    expect(page.locator("#frame-canvas")).to_have_attribute("data-frame", "2")
+    wait_until(page, lambda: near(rings_of(page, 1), 50, 50))
+
+
 def test_vertices_are_put_in_at_middles_and_taken_out(editing) -> None:
     page = editing()
     put_square(page, 3)
@@ -286,6 +302,7 @@ def test_two_pages_in_conflict_lose_neither_outline(editing, browser) -> None:
     page = editing()
     put_square(page, 3)
     other = browser.new_page()
+    other.route("**/viewport/", lambda route: route.fulfill(body=""))
     other.goto(origin(page))
     expect(other.locator("#frame-canvas")).to_have_attribute("data-frame", "3")
     page.mouse.move(*place(page, 60, 60))
