@@ -10,13 +10,13 @@ import json
 import threading
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
+from queue import SimpleQueue
 from typing import Any
 
 import cv2
 import numpy as np
 import viser
-import zstandard
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 from websockets.typing import Subprotocol
@@ -47,6 +47,7 @@ def run_loop(
     *,
     sizes: Sequence[tuple[int, int]] = SIZES,
     edits: int = EDITS,
+    previews: int = PREVIEWS,
     seed: int = 1,
     progress: Progress = lambda _stage, _done, _total: None,
 ) -> Results:
@@ -55,17 +56,18 @@ def run_loop(
     Args:
         sizes: (voxels a side, frames).
         edits: in each session.
+        previews: in the drag at its end.
         seed: of frames and edits.
         progress: told of stage, steps done and steps in all.
     """
     before = machine()
     figures: list[Figure] = []
     for size, views in sizes:
-        figures += _session(size, views, edits, seed, progress)
+        figures += _session(size, views, edits, previews, seed, progress)
     settings = {
         "sizes": [f"{size}x{views}" for size, views in sizes],
         "edits": edits,
-        "previews": PREVIEWS,
+        "previews": previews,
         "seed": seed,
         **before,
         "load_average_at_end": machine()["load_average"],
@@ -102,7 +104,9 @@ def _source(views: int, seed: int) -> Source:
     return Source(name="test satellite", frames=lambda: frames, expected_frames=views)
 
 
-def _session(size: int, views: int, edits: int, seed: int, progress: Progress) -> list[Figure]:
+def _session(
+    size: int, views: int, edits: int, previews: int, seed: int, progress: Progress
+) -> list[Figure]:
     settings = ReconstructionSettings(
         side_m=GRID_SIDE_M,
         spacing_m=GRID_SIDE_M / size,
@@ -112,15 +116,14 @@ def _session(size: int, views: int, edits: int, seed: int, progress: Progress) -
     whole_ms, published_ms = [], []
     with _running(_source(views, seed), settings) as (port, stream):
         _wait_until_finished(stream)
-        page = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)
-        script = _edits(page, views, np.random.default_rng(seed))
-        with _Viewer(port, stream) as viewer:
+        with _connected(port) as page, _Viewer(port, stream) as viewer:
+            script = _edits(page, views, np.random.default_rng(seed))
             _edit(page, viewer, *next(script))  # compiles
             for done in range(1, edits + 1):
                 whole_ms.append(_edit(page, viewer, *next(script)))
                 published_ms.append(stream.snapshot.latency_ms or 0.0)
                 progress(f"{size}³×{views}", done, edits)
-            rate_hz = _preview_rate_hz(page, viewer, *next(script))
+            rate_hz = _preview_rate_hz(page, viewer, previews, *next(script))
         is_same = _is_from_scratch(stream)
     title = f"{size}³×{views}"
     return [
@@ -162,17 +165,21 @@ def _edit(
 
 
 def _preview_rate_hz(
-    page: http.client.HTTPConnection, viewer: "_Viewer", number: int, order: dict[str, Any]
+    page: http.client.HTTPConnection,
+    viewer: "_Viewer",
+    previews: int,
+    number: int,
+    order: dict[str, Any],
 ) -> float:
     """Return how often a second the hull follows a drag that sends as soon as it is answered."""
     start_s = end_s = time.perf_counter()
-    for step in range(PREVIEWS):
+    for step in range(previews):
         rings = [[[row + 0.1 * step, column] for row, column in ring] for ring in order["rings"]]
         sent_s = time.perf_counter()
         _asked(page, "PUT", f"/api/frames/{number}/preview", {**order, "rings": rings})
         end_s = viewer.wait(sent_s)
     _asked(page, "DELETE", f"/api/frames/{number}/preview")
-    return PREVIEWS / (end_s - start_s)
+    return previews / (end_s - start_s)
 
 
 def _edits(
@@ -196,6 +203,10 @@ def _moved(rings: list[Floats], random: np.random.Generator) -> list[Floats]:
     centre = np.concatenate(rings).mean(axis=0)
     scale, shift = random.uniform(0.98, 1.02), random.normal(0.0, 1.0, 2)
     return [centre + scale * (ring - centre) + shift for ring in rings]
+
+
+def _connected(port: int) -> closing[http.client.HTTPConnection]:
+    return closing(http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S))
 
 
 def _asked(
@@ -223,8 +234,7 @@ class _Viewer:
         )
         self._stream = stream
         self._shown = stream.snapshot.surface
-        self._came = threading.Condition()
-        self._latest: tuple[bytes, float] = (b"", 0.0)
+        self._messages: SimpleQueue[tuple[bytes, float]] = SimpleQueue()
         self._thread = threading.Thread(target=self._listen, daemon=True)
 
     def __enter__(self) -> "_Viewer":
@@ -243,32 +253,24 @@ class _Viewer:
         before, self._shown = self._shown, self._stream.snapshot.surface
         assert before is not None
         assert self._shown is not None
-        if np.array_equal(before.vertices_m, self._shown.vertices_m):
+        # The viewport's vertices are of single precision.
+        shown, earlier = (mesh.vertices_m.astype(np.float32) for mesh in (self._shown, before))
+        if np.array_equal(shown, earlier):
             return time.perf_counter()
-        vertices = self._shown.vertices_m.astype(np.float32).tobytes()
-        with self._came:
-            if not self._came.wait_for(
-                lambda: self._latest[1] > start_s and vertices in self._latest[0], PATIENCE_S
-            ):
-                raise RuntimeError("The hull on show did not reach the viewport.")
-            return self._latest[1]
+        vertices = shown.tobytes()
+        deadline_s = time.perf_counter() + PATIENCE_S
+        while True:
+            message, came_s = self._messages.get(timeout=deadline_s - time.perf_counter())
+            if came_s > start_s and vertices in message:
+                return came_s
 
     def _listen(self) -> None:
         try:
             for message in self._socket:
                 assert isinstance(message, bytes)
-                self._note(message, time.perf_counter())
+                self._messages.put((message, time.perf_counter()))
         except ConnectionClosed:
             return
-
-    def _note(self, message: bytes, came_s: float) -> None:
-        # viser: two lengths of 8 bytes, packed metadata, then the arrays as they are.
-        packed = message[16 : 16 + int.from_bytes(message[8:16], "little")]
-        metadata = zstandard.ZstdDecompressor().decompress(packed)
-        if b"/hull" in metadata:
-            with self._came:
-                self._latest = message, came_s
-                self._came.notify_all()
 
 
 @contextmanager

@@ -1,17 +1,21 @@
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 from viser.transforms import SO3
 
-from app.viewport import CAMERA_DIRECTION, picture_plane
+from app.snapshot import Record, Snapshot
+from app.viewport import CAMERA_DIRECTION, Viewport, picture_plane
+from app.viser_server import PrivateViserServer
+from core.analysis.analysis import Analysis
 from core.frame import Frame
 from core.geometry.grid import VoxelGrid
 from core.geometry.projection import Projection
 from core.hull.surface import Surface, mask_surface
 from core.silhouettes.extraction import extract_silhouette
 from core.silhouettes.silhouette import Silhouette
-from tests.app.synthetic import SPACING_M, frames
+from tests.app.synthetic import SETTINGS, SPACING_M, frames
 
 
 @dataclass(frozen=True)
@@ -85,3 +89,56 @@ def test_a_perspective_image_has_no_plane(drawn) -> None:
     camera = Projection(matrix=np.eye(3, 4) + np.array([[0], [0], [1]]) * [0, 0, 0, 50])
     seen_so = replace(drawn, frame=replace(drawn.frame, projection=camera))
     assert plane_of(seen_so, 24.0, None) is None
+
+
+@pytest.fixture
+def viewport() -> Iterator[Viewport]:
+    server = PrivateViserServer()
+    yield Viewport(server)
+    server.stop()
+
+
+def snapshot_of(analysis: Analysis) -> Snapshot:
+    records = tuple(Record(analysed=frame, hull=analysis.hull) for frame in analysis.frames)
+    return Snapshot(
+        run=1,
+        status="playing",
+        speed_hz=None,
+        settings=analysis.settings,
+        records=records,
+        hull=analysis.hull,
+        surface=analysis.surface,
+    )
+
+
+def test_an_edit_moves_the_mesh_and_sends_no_picture_again(viewport) -> None:
+    analysis = Analysis(SETTINGS)
+    for frame in frames(3):
+        analysis.receive(frame)
+    viewport.show(snapshot_of(analysis))
+    mesh, image = viewport._hull, viewport._picture.image
+    before = mesh.vertices.copy()
+    outline = analysis.frame(1).silhouette
+    smaller = replace(outline, rings=tuple(0.9 * ring + 8 for ring in outline.rings))
+    analysis.commit(1, smaller, tool="scale", base_revision=0)
+    viewport.show(snapshot_of(analysis))
+    assert viewport._hull is mesh
+    assert mesh.vertices.shape != before.shape
+    np.testing.assert_array_equal(mesh.vertices, analysis.surface.vertices_m.astype(np.float32))
+    np.testing.assert_array_equal(mesh.faces, analysis.surface.faces)
+    assert viewport._picture.image is image
+
+
+def test_an_empty_hull_is_hidden_and_comes_back(viewport) -> None:
+    analysis = Analysis(SETTINGS)
+    for frame in frames(2):
+        analysis.receive(frame)
+    viewport.show(snapshot_of(analysis))
+    analysis.set_state(1, "excluded")
+    analysis.set_state(2, "excluded")
+    viewport.show(snapshot_of(analysis))
+    assert not viewport._hull.visible
+    analysis.set_state(1, "ok")
+    viewport.show(snapshot_of(analysis))
+    assert viewport._hull.visible
+    np.testing.assert_array_equal(viewport._hull.faces, analysis.surface.faces)
