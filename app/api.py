@@ -9,7 +9,7 @@ from starlette.websockets import WebSocketDisconnect
 
 from app.changes import Changes
 from app.facts import frame_facts, state_facts
-from app.pictures import FLOOR_DB, STEP_DB, colour_table, encoded_levels
+from app.pictures import FLOOR_DB, STEP_DB, ColourName, colour_table, encoded_levels
 from app.relay import first_to_end
 from app.snapshot import Record
 from app.stream import LiveStream
@@ -51,9 +51,9 @@ def readstate_of(stream: Stream) -> dict[str, Any]:
 
 
 @router.get("/colours")
-def read_colours() -> list[list[int]]:
-    """Return the 256 RGB colours of frame pictures, from the floor to 0 dB."""
-    table: list[list[int]] = colour_table().tolist()
+def read_colours(name: ColourName = "magma") -> list[list[int]]:
+    """Return the 256 RGB colours of frame pictures, from the lowest level shown to the highest."""
+    table: list[list[int]] = colour_table(name).tolist()
     return table
 
 

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.api import Stream, record_at, state_of
 from app.facts import frame_facts
-from app.proposals import Question, proposal, reprojected_rings
+from app.proposals import TOOLS, Question, proposal, reprojected_rings
 from core.analysis.analysis import Analysis
 from core.analysis.frames import ReviewState
 from core.analysis.history import NothingLeft, StaleRevision
@@ -128,6 +128,12 @@ def set_state(number: int, order: StateOrder, stream: Stream) -> dict[str, Any]:
     """Say how far the analyst is with a frame; an excluded one does not vote."""
     _edited(number, stream, lambda work: work.set_state(number, order.state))
     return state_of(stream)
+
+
+@router.get("/tools")
+def read_tools() -> list[str]:
+    """Return the names of the tools that propose outlines."""
+    return list(TOOLS)
 
 
 @router.post("/frames/{number}/proposals")

@@ -3,7 +3,7 @@
 The page and the viewport colour the same numbers with the same table.
 """
 
-from typing import Any
+from typing import Any, Literal
 
 import cv2
 import numpy as np
@@ -19,6 +19,14 @@ STEP_DB = -FLOOR_DB / 65535
 
 SHOWN_FLOOR_DB = -40.0
 """Level at which pictures turn dark before the analyst chooses another."""
+
+ColourName = Literal["magma", "viridis", "cividis", "grey"]
+
+_OPENCV_MAPS = {
+    "magma": cv2.COLORMAP_MAGMA,
+    "viridis": cv2.COLORMAP_VIRIDIS,
+    "cividis": cv2.COLORMAP_CIVIDIS,
+}
 
 FADE = (0.15, 0.45)
 """Parts of the shown dynamic range between which a picture in space turns from clear to opaque.
@@ -37,13 +45,16 @@ def encoded_levels(frame: Frame) -> NDArray[np.uint16]:
     return encoded
 
 
-def colour_table() -> NDArray[np.uint8]:
-    """Return 256 colours (256, 3) RGB from dark to bright, perceptually uniform.
+def colour_table(name: ColourName = "magma") -> NDArray[np.uint8]:
+    """Return 256 colours (256, 3) RGB from dark to bright.
 
-    Source: "magma" by Smith and van der Walt, CC0, as OpenCV carries it.
+    Source: "magma", "viridis" and "cividis", perceptually uniform, as OpenCV carries them; "grey"
+    is a linear ramp.
     """
     ramp = np.arange(256, dtype=np.uint8)[:, None]
-    table: NDArray[np.uint8] = cv2.applyColorMap(ramp, cv2.COLORMAP_MAGMA)[:, 0, ::-1].copy()
+    if name == "grey":
+        return np.repeat(ramp, 3, axis=1)
+    table: NDArray[np.uint8] = cv2.applyColorMap(ramp, _OPENCV_MAPS[name])[:, 0, ::-1].copy()
     return table
 
 

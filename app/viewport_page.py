@@ -20,11 +20,13 @@ _LOADER = re.compile(
 )
 
 _STYLE = """<style>
-[data-floating-window], [data-dock-leaf], .mantine-Notifications-root { display: none !important; }
+[data-floating-window], [data-dock-leaf], .mantine-Notifications-root,
+.mantine-Paper-root[style*="position: fixed"] { display: none !important; }
 html, body { background: #0b0e14 !important; }
 #root * { background-color: transparent !important; }
 </style>"""
-"""Hides viser's control panel and notices, whose place our page takes, and shows our ground."""
+"""Hides viser's control panel, which a narrow window fixes to its foot, and its notices, whose
+place our page takes, and shows our ground."""
 
 
 _QUIET = """

@@ -29,13 +29,14 @@ function silhouetteText(frame) {
   return `${side}, ${withUnit(square, 1, "m²")}`;
 }
 
-/** The rows that describe the hull's surface, and how lightly it is drawn. */
-export function hullRows(hull, light) {
+/** The rows that describe the hull's surface, how lightly it is drawn, and how soon it followed. */
+export function hullRows(hull, light, latencyMs) {
   const rows = [
     ["Volume", hull.volume_m3 === null ? "not bounded" : withUnit(hull.volume_m3, 1, "m³")],
     ["Vertices", count(hull.vertices)],
     ["Faces", count(hull.faces)],
   ];
+  if (latencyMs !== null) rows.push(["Followed the last edit in", withUnit(latencyMs, 0, "ms")]);
   if (light === null) return rows;
   const off = withUnit(1000 * light.error_m, 1, "mm");
   return [...rows, ["Drawn with", `${count(light.faces)} faces, ${off} off at most`]];

@@ -1,12 +1,11 @@
-// The radar frame on a canvas: levels in dB in true proportions, axes in metres, silhouette.
+// The radar frame on a canvas: levels in dB in true proportions, zoomed and moved, axes in metres.
 
-import { fixed, roundSteps, withUnit } from "./numbers.js";
+import { MARGIN, drawAxes, drawBar } from "./axes.js";
+import { paintLevels } from "./levels.js";
+import { fixed, withUnit } from "./numbers.js";
 
-const MARGIN = { left: 50, top: 6, right: 62, bottom: 42 };
-const BAR = { gap: 14, width: 12 };
-const TEXT = "#8f9bad";
-const OUTLINE = "#40e0d0";
-const FONT = '12px system-ui, "Segoe UI", "Helvetica Neue", "Noto Sans", "DejaVu Sans", sans-serif';
+const WIDEST_M = 4000;
+const CLOSEST_PX = 200;
 
 export class FrameView {
   #canvas;
@@ -15,14 +14,27 @@ export class FrameView {
   #frame = null;
   #levels = null;
   #floorDb = -40;
+  #topDb = 0;
   #windowM = null;
+  #part = null;
+  #onDraw;
 
-  /** Draw on `canvas`; tell `onRead` what is under the cursor, null when nothing is. */
-  constructor(canvas, onRead) {
+  /** Draw on `canvas`; call `onDraw` with where the frame lies after each drawing. */
+  constructor(canvas, onRead, onDraw) {
     this.#canvas = canvas;
+    this.#onDraw = onDraw;
     canvas.addEventListener("pointermove", (event) => onRead(this.#read(event)));
     canvas.addEventListener("pointerleave", () => onRead(null));
     new ResizeObserver(() => this.#draw()).observe(canvas);
+  }
+
+  /** Whether somebody zoomed or moved away from what fits. */
+  get isFree() {
+    return this.#part !== null;
+  }
+
+  get hasFrame() {
+    return this.#frame !== null && this.#levels !== null;
   }
 
   setColours(table) {
@@ -31,6 +43,8 @@ export class FrameView {
   }
 
   setFrame(frame, levels) {
+    // A part chosen in metres means nothing on a frame in pixels.
+    if ((frame.row_spacing_m === null) !== (this.#frame?.row_spacing_m === null)) this.#part = null;
     this.#frame = frame;
     this.#levels = levels;
     this.#paint();
@@ -42,200 +56,153 @@ export class FrameView {
     this.#draw();
   }
 
-  setFloor(decibels) {
-    this.#floorDb = decibels;
+  /** Show levels from `floorDb` to `topDb`. */
+  setLevels(floorDb, topDb) {
+    this.#floorDb = floorDb;
+    this.#topDb = topDb;
     this.#paint();
   }
 
-  /** Show a square of so many metres around the target, or the whole frame for null. */
+  /** Fit a square of so many metres around the target, or the whole frame for null. */
+  fit(metres) {
+    this.#windowM = metres;
+    this.#part = null;
+    this.#draw();
+  }
+
+  /** Set the size that fits the target, and leave a part that somebody zoomed to. */
   setWindow(metres) {
+    if (metres === this.#windowM) return;
     this.#windowM = metres;
     this.#draw();
   }
 
-  /** Colour the levels, one pixel each. */
-  #paint() {
-    if (!this.#levels || !this.#colours) return;
-    const { rows, columns, numbers } = this.#levels;
-    this.#picture.width = columns;
-    this.#picture.height = rows;
-    const context = this.#picture.getContext("2d");
-    const image = context.createImageData(columns, rows);
-    const pixels = new Uint32Array(image.data.buffer);
-    const colourOf = this.#coloursOfNumbers();
-    for (let place = 0; place < numbers.length; place += 1) {
-      pixels[place] = colourOf[numbers[place]];
-    }
-    context.putImageData(image, 0, 0);
+  /** Zoom by a factor about a place on the canvas, by default the plot's middle. */
+  zoom(factor, place) {
+    if (!this.hasFrame) return;
+    const plot = this.plot();
+    const [x, y] = place ?? [plot.x + plot.width / 2, plot.y + plot.height / 2];
+    const current = this.#part ?? partOf(plot);
+    const least = Math.min(plot.width, plot.height) / WIDEST_M;
+    const most = CLOSEST_PX / Math.min(plot.rowM, plot.columnM);
+    const perMetre = Math.min(Math.max(current.perMetre * factor, least), most);
+    const shift = (offset) => offset / current.perMetre - offset / perMetre;
+    this.#part = {
+      perMetre,
+      rangeM: current.rangeM + shift(y - plot.y - plot.height / 2),
+      crossM: current.crossM + shift(x - plot.x - plot.width / 2),
+    };
     this.#draw();
   }
 
-  /** The pixel, in the machine's byte order, for each of the 65536 numbers a level can have. */
-  #coloursOfNumbers() {
-    const { floorDb, stepDb } = this.#levels;
-    const bytes = new Uint8Array(4 * this.#colours.length);
-    this.#colours.forEach((colour, index) => bytes.set([...colour, 255], 4 * index));
-    const pixelOfIndex = new Uint32Array(bytes.buffer);
-    const colourOf = new Uint32Array(65536);
-    for (let number = 0; number < colourOf.length; number += 1) {
-      const share = 1 - (floorDb + number * stepDb) / this.#floorDb;
-      colourOf[number] = pixelOfIndex[Math.floor(Math.min(Math.max(share, 0), 1) * 255 + 0.5)];
+  /** Move the picture by so many CSS pixels. */
+  pan(dx, dy) {
+    if (!this.hasFrame) return;
+    const current = this.#part ?? partOf(this.plot());
+    this.#part = {
+      ...current,
+      rangeM: current.rangeM - dy / current.perMetre,
+      crossM: current.crossM - dx / current.perMetre,
+    };
+    this.#draw();
+  }
+
+  /** Where which part of the frame is drawn: places in CSS pixels, the part in frame pixels. */
+  plot() {
+    const { clientWidth, clientHeight } = this.#canvas;
+    const frame = this.#frame;
+    const [rowM, columnM] = [frame.row_spacing_m ?? 1, frame.column_spacing_m ?? 1];
+    const [originRow, originColumn] = frame.origin_px;
+    const width = Math.max(clientWidth - MARGIN.left - MARGIN.right, 1);
+    const height = Math.max(clientHeight - MARGIN.top - MARGIN.bottom, 1);
+    const part = this.#part ?? this.#fitted(width, height, rowM, columnM);
+    const [rows, columns] = [height / part.perMetre / rowM, width / part.perMetre / columnM];
+    return {
+      x: MARGIN.left,
+      y: MARGIN.top,
+      width,
+      height,
+      row: originRow + part.rangeM / rowM - rows / 2,
+      column: originColumn + part.crossM / columnM - columns / 2,
+      rows,
+      columns,
+      originRow,
+      originColumn,
+      rowM,
+      columnM,
+    };
+  }
+
+  /** The frame's (row, column) at a place on the canvas. */
+  pixelAt(x, y) {
+    const plot = this.plot();
+    return [
+      plot.row + ((y - plot.y) / plot.height) * plot.rows,
+      plot.column + ((x - plot.x) / plot.width) * plot.columns,
+    ];
+  }
+
+  #fitted(width, height, rowM, columnM) {
+    const frame = this.#frame;
+    if (this.#windowM !== null && frame.row_spacing_m !== null) {
+      return { perMetre: Math.min(width, height) / this.#windowM, rangeM: 0, crossM: 0 };
     }
-    return colourOf;
+    const [rows, columns] = frame.shape;
+    const [originRow, originColumn] = frame.origin_px;
+    return {
+      perMetre: Math.min(width / (columns * columnM), height / (rows * rowM)),
+      rangeM: ((rows - 1) / 2 - originRow) * rowM,
+      crossM: ((columns - 1) / 2 - originColumn) * columnM,
+    };
+  }
+
+  #paint() {
+    if (!this.#levels || !this.#colours) return;
+    paintLevels(this.#picture, this.#levels, this.#colours, this.#floorDb, this.#topDb);
+    this.#draw();
   }
 
   #draw() {
     const canvas = this.#canvas;
     const scale = window.devicePixelRatio;
-    const { clientWidth: width, clientHeight: height } = canvas;
-    canvas.width = Math.round(width * scale);
-    canvas.height = Math.round(height * scale);
-    if (!this.#frame || !this.#levels) return;
+    canvas.width = Math.round(canvas.clientWidth * scale);
+    canvas.height = Math.round(canvas.clientHeight * scale);
+    if (!this.hasFrame || !this.#colours) {
+      this.#onDraw(null);
+      return;
+    }
     const context = canvas.getContext("2d");
     context.setTransform(scale, 0, 0, scale, 0, 0);
-    context.font = FONT;
-    const plot = this.#plot(width, height);
+    const plot = this.plot();
     // Tests and tools read here where pixels of the frame lie on the canvas.
     canvas.dataset.plot = JSON.stringify(plot);
     this.#drawPicture(context, plot);
-    this.#drawOutline(context, plot);
-    this.#drawAxes(context, plot);
-    this.#drawBar(context, plot);
-  }
-
-  /** Where which part of the frame is drawn: places in CSS pixels, the part in frame pixels. */
-  #plot(width, height) {
-    const frame = this.#frame;
-    const [rowM, columnM] = [frame.row_spacing_m ?? 1, frame.column_spacing_m ?? 1];
-    const [originRow, originColumn] = frame.origin_px;
-    const part = { row: -0.5, column: -0.5, rows: frame.shape[0], columns: frame.shape[1] };
-    if (this.#windowM !== null && frame.row_spacing_m !== null) {
-      part.rows = this.#windowM / rowM;
-      part.columns = this.#windowM / columnM;
-      part.row = originRow - part.rows / 2;
-      part.column = originColumn - part.columns / 2;
-    }
-    const room = [width - MARGIN.left - MARGIN.right, height - MARGIN.top - MARGIN.bottom];
-    const size = [part.columns * columnM, part.rows * rowM];
-    const perMetre = Math.min(room[0] / size[0], room[1] / size[1]);
-    const plot = { width: size[0] * perMetre, height: size[1] * perMetre };
-    plot.x = MARGIN.left + (room[0] - plot.width) / 2;
-    plot.y = MARGIN.top;
-    return { ...plot, ...part, originRow, originColumn, rowM, columnM };
+    drawAxes(context, plot, this.#frame.row_spacing_m === null ? "px" : "m");
+    drawBar(context, plot, this.#colours, this.#floorDb, this.#topDb);
+    this.#onDraw(plot);
   }
 
   #drawPicture(context, plot) {
     context.save();
-    context.beginPath();
-    context.rect(plot.x, plot.y, plot.width, plot.height);
-    context.clip();
-    context.fillStyle = "#000004";
+    clipTo(context, plot);
+    const [red, green, blue] = this.#colours[0];
+    context.fillStyle = `rgb(${red} ${green} ${blue})`;
     context.fill();
     context.imageSmoothingEnabled = false;
+    const [rows, columns] = this.#frame.shape;
     const [left, top] = onCanvas(plot, -0.5, -0.5);
-    const [right, bottom] = onCanvas(
-      plot,
-      this.#frame.shape[0] - 0.5,
-      this.#frame.shape[1] - 0.5,
-    );
+    const [right, bottom] = onCanvas(plot, rows - 0.5, columns - 0.5);
     context.drawImage(this.#picture, left, top, right - left, bottom - top);
     context.restore();
-    context.strokeStyle = "#3b475b";
-    context.lineWidth = 1;
-    context.strokeRect(plot.x - 0.5, plot.y - 0.5, plot.width + 1, plot.height + 1);
   }
 
-  #drawOutline(context, plot) {
-    context.save();
-    context.beginPath();
-    context.rect(plot.x, plot.y, plot.width, plot.height);
-    context.clip();
-    context.beginPath();
-    for (const ring of this.#frame.silhouette.rings) {
-      ring.forEach(([row, column], index) => {
-        const place = onCanvas(plot, row, column);
-        if (index === 0) context.moveTo(...place);
-        else context.lineTo(...place);
-      });
-      context.closePath();
-    }
-    context.strokeStyle = OUTLINE;
-    context.lineWidth = 1.5;
-    context.lineJoin = "round";
-    context.stroke();
-    context.restore();
-  }
-
-  #drawAxes(context, plot) {
-    const lastCrossOffset = plot.columns * plot.columnM;
-    const unit = this.#frame.row_spacing_m === null ? "px" : "m";
-    const firstRange = (plot.row - plot.originRow) * plot.rowM;
-    const firstCross = (plot.column - plot.originColumn) * plot.columnM;
-    const perMetre = plot.height / (plot.rows * plot.rowM);
-    context.fillStyle = TEXT;
-    context.strokeStyle = "#3b475b";
-    context.textAlign = "center";
-    context.textBaseline = "top";
-    for (const { value, text } of roundSteps(firstCross, firstCross + lastCrossOffset, 8)) {
-      const x = plot.x + (value - firstCross) * perMetre;
-      tick(context, x, plot.y + plot.height + 1, 0, 4);
-      context.fillText(text, x, plot.y + plot.height + 7);
-    }
-    context.textAlign = "right";
-    context.textBaseline = "middle";
-    const lastRange = firstRange + plot.rows * plot.rowM;
-    for (const { value, text } of roundSteps(firstRange, lastRange, 8)) {
-      const y = plot.y + (value - firstRange) * perMetre;
-      tick(context, plot.x - 1, y, -4, 0);
-      context.fillText(text, plot.x - 8, y);
-    }
-    this.#drawTitles(context, plot, unit);
-  }
-
-  #drawTitles(context, plot, unit) {
-    context.textAlign = "center";
-    context.textBaseline = "bottom";
-    const below = plot.y + plot.height + 40;
-    context.fillText(`cross-range, ${unit} →`, plot.x + plot.width / 2, below);
-    context.save();
-    context.translate(plot.x - 46, plot.y + plot.height / 2);
-    context.rotate(-Math.PI / 2);
-    context.textBaseline = "top";
-    context.fillText(`← range from the origin, ${unit}`, 0, 0);
-    context.restore();
-  }
-
-  #drawBar(context, plot) {
-    const x = plot.x + plot.width + BAR.gap;
-    const height = plot.height;
-    for (let pixel = 0; pixel < height; pixel += 1) {
-      const [red, green, blue] = this.#colours[Math.round(255 * (1 - pixel / (height - 1)))] ?? [];
-      context.fillStyle = `rgb(${red} ${green} ${blue})`;
-      context.fillRect(x, plot.y + pixel, BAR.width, 1.5);
-    }
-    context.fillStyle = TEXT;
-    context.textAlign = "left";
-    context.textBaseline = "middle";
-    for (const { value, text } of roundSteps(this.#floorDb, 0, 5)) {
-      const y = plot.y + (value / this.#floorDb) * height;
-      const inside = Math.min(Math.max(y, plot.y + 6), plot.y + height - 6);
-      context.fillText(text, x + BAR.width + 6, inside);
-    }
-    context.textBaseline = "top";
-    context.fillText("dB", x - 1, plot.y + height + 7);
-  }
-
-  #read(event) {
-    if (!this.#frame || !this.#levels) return null;
-    const plot = JSON.parse(this.#canvas.dataset.plot);
-    const row = plot.row + ((event.offsetY - plot.y) / plot.height) * plot.rows;
-    const column = plot.column + ((event.offsetX - plot.x) / plot.width) * plot.columns;
+  #read({ offsetX: x, offsetY: y }) {
+    if (!this.hasFrame) return null;
+    const plot = this.plot();
+    const [row, column] = this.pixelAt(x, y);
     const { rows, columns, numbers, floorDb, stepDb } = this.#levels;
     const [r, c] = [Math.round(row), Math.round(column)];
-    const isInside =
-      event.offsetX >= plot.x && event.offsetX <= plot.x + plot.width &&
-      event.offsetY >= plot.y && event.offsetY <= plot.y + plot.height;
-    if (!isInside || r < 0 || c < 0 || r >= rows || c >= columns) return null;
+    if (!isInside(plot, x, y) || r < 0 || c < 0 || r >= rows || c >= columns) return null;
     const unit = this.#frame.row_spacing_m === null ? "px" : "m";
     return {
       range: withUnit((row - plot.originRow) * plot.rowM, 2, unit),
@@ -246,16 +213,30 @@ export class FrameView {
   }
 }
 
-function onCanvas(plot, row, column) {
+/** Keep what is drawn from here on within the plot. */
+export function clipTo(context, plot) {
+  context.beginPath();
+  context.rect(plot.x, plot.y, plot.width, plot.height);
+  context.clip();
+}
+
+/** Where a (row, column) of the frame lies on the canvas. */
+export function onCanvas(plot, row, column) {
   return [
     plot.x + ((column - plot.column) / plot.columns) * plot.width,
     plot.y + ((row - plot.row) / plot.rows) * plot.height,
   ];
 }
 
-function tick(context, x, y, dx, dy) {
-  context.beginPath();
-  context.moveTo(x, y);
-  context.lineTo(x + dx, y + dy);
-  context.stroke();
+export function isInside(plot, x, y) {
+  return x >= plot.x && x <= plot.x + plot.width && y >= plot.y && y <= plot.y + plot.height;
+}
+
+/** The part that a plot shows: its middle in metres from the origin, and its scale. */
+function partOf(plot) {
+  return {
+    perMetre: plot.height / (plot.rows * plot.rowM),
+    rangeM: (plot.row + plot.rows / 2 - plot.originRow) * plot.rowM,
+    crossM: (plot.column + plot.columns / 2 - plot.originColumn) * plot.columnM,
+  };
 }

@@ -1,18 +1,19 @@
 // The page: one state from the server, shown in every part.
 
-import {
-  afterFrames,
-  frameRows,
-  hullRows,
-  showExtents,
-  showLines,
-  showNote,
-  showRows,
-  showUnobserved,
-} from "./facts-view.js";
-import { FrameView } from "./frame-view.js";
-import { frames, views, withUnit } from "./numbers.js";
-import { getJson, getLevels, keepLinked, order } from "./server.js";
+import { Banner } from "./banner.js";
+import { Carving } from "./carving.js";
+import { Editor } from "./editor.js";
+import { FramePanel } from "./frame-panel.js";
+import { showHull } from "./hull-view.js";
+import { resizablePanes } from "./panes.js";
+import { Proposals } from "./proposals.js";
+import { Review } from "./review.js";
+import { getJson, keepLinked, send } from "./server.js";
+import { bindShortcuts, fillSheet } from "./shortcuts.js";
+import { listenInSpace } from "./space-keys.js";
+import { showSource } from "./source-view.js";
+import { Tabs } from "./tabs.js";
+import { Toolbar } from "./toolbar.js";
 import { Transport } from "./transport.js";
 
 const part = (id) => document.getElementById(id);
@@ -24,7 +25,66 @@ let isFetching = false;
 let linkWasLost = false;
 let complaint = "";
 
-const frameView = new FrameView(part("frame-canvas"), showReading);
+const tabs = new Tabs(document.querySelectorAll("[role=tab]"));
+const banner = new Banner(part("banner"));
+const panel = new FramePanel(showEditing, complain);
+const { session, view, scene } = panel;
+const editor = new Editor(part("frame-canvas"), view, session, scene, {
+  redraw: () => panel.redraw(),
+  complain,
+  onStart: stay,
+  onTool: () => toolbar?.update(),
+  onSeed: (row, column) => proposals.seed(row, column),
+});
+const toolbar = new Toolbar(panel, editor, () => state?.window_m ?? null);
+const proposals = new Proposals(
+  {
+    list: part("tool-list"),
+    form: part("tool-form"),
+    settings: part("tool-settings"),
+    hint: part("tool-hint"),
+    complaint: part("tool-complaint"),
+    apply: part("tool-apply"),
+    discard: part("tool-discard"),
+  },
+  session,
+  {
+    show: showProposal,
+    open: () => {
+      tabs.open("tools");
+      stay();
+    },
+    seeding: (isSeeding) => {
+      if (isSeeding !== (editor.toolName === "grow")) editor.choose(isSeeding ? "grow" : "vertex");
+    },
+  },
+);
+const review = new Review(
+  {
+    buttons: [...document.querySelectorAll("#review button[data-state]")],
+    accept: part("accept"),
+    count: part("review-count"),
+  },
+  (number, name) => command("PUT", `/api/frames/${number}/state`, { state: name }),
+  showFrame,
+);
+const carving = new Carving(
+  {
+    form: part("carving"),
+    rule: part("carving-rule"),
+    misses: part("carving-misses"),
+    spacing: part("carving-spacing"),
+    preview: part("preview-chip"),
+    threshold: part("threshold"),
+    revision: part("revision"),
+    emptied: part("emptied"),
+  },
+  {
+    set: (changes) => command("PUT", "/api/carving", changes),
+    exclude: excludeAll,
+    go: showFrame,
+  },
+);
 const transport = new Transport(
   {
     play: part("play"),
@@ -35,18 +95,41 @@ const transport = new Transport(
     follow: part("follow"),
     text: part("reel-text"),
   },
-  (body) => command("/api/playback", body),
-  (frame) => command("/api/shown", { frame }),
+  (body) => command("POST", "/api/playback", body),
+  (frame) => command("POST", "/api/shown", { frame }),
+  () => editor.spaceMovedPicture,
 );
 
-async function command(path, body) {
+async function command(method, path, body) {
   try {
     complaint = "";
-    showState(await order(path, body));
+    showState(await send(method, path, body));
   } catch (error) {
-    complaint = error.message;
-    showBanner();
+    complain(error.message);
+    if (state) carving.update(state);
   }
+}
+
+function showFrame(number) {
+  return command("POST", "/api/shown", { frame: number === state.frames ? null : number });
+}
+
+/** Stay with the frame that somebody edits while others arrive. */
+function stay() {
+  if (state?.following && state.status === "playing") {
+    command("POST", "/api/shown", { frame: session.frame.number });
+  }
+}
+
+async function excludeAll(numbers) {
+  for (const number of numbers) {
+    await command("PUT", `/api/frames/${number}/state`, { state: "excluded" });
+  }
+}
+
+function complain(sentence) {
+  complaint = sentence;
+  showBanner();
 }
 
 function showState(next) {
@@ -54,81 +137,30 @@ function showState(next) {
   if (next.serial < newestSerial) return;
   newestSerial = next.serial;
   state = next;
-  part("source-name").textContent = state.source.name;
-  part("source-description").textContent = state.source.description;
-  part("source").title = state.source.description;
-  document.title = `${state.source.name} – radarhull`;
-  part("status").textContent = statusText();
-  part("status").dataset.status = state.status;
-  showProgress();
-  showHull();
+  showSource(state);
+  showHull(state);
   showBanner();
+  carving.update(state);
+  review.update(state);
   transport.update(state);
+  panel.bringOverlays(state.hull?.revision);
   bringFrame();
-}
-
-function statusText() {
-  const { status, source } = state;
-  const total = source.expected_frames;
-  const place = total === null ? `frame ${state.frames}` : `frame ${state.frames} of ${total}`;
-  return {
-    preparing: `Preparing ${source.name}…`,
-    playing: `Imaging ${place}`,
-    paused: state.frames === 0 ? "Paused before the first frame" : `Paused at ${place}`,
-    finished: `All ${frames(state.frames)} received`,
-    failed: state.frames === 0 ? "Failed before the first frame" : `Failed after ${place}`,
-  }[status];
-}
-
-function showProgress() {
-  const bar = part("progress");
-  const total = state.source.expected_frames;
-  bar.hidden = total === null;
-  if (state.status === "preparing") bar.removeAttribute("value");
-  else if (total !== null) bar.value = state.frames / total;
-}
-
-function showHull() {
-  const { hull } = state;
-  const waiting = state.status === "failed" ? "No frame arrived." : "Preparing the first frame…";
-  part("hull-body").hidden = hull === null || hull.is_empty;
-  part("hull-empty").hidden = hull !== null && !hull.is_empty;
-  part("hull-empty").textContent = noHullText();
-  part("hull-stamp").textContent = hull === null ? "" : afterFrames(hull.frames);
-  part("space-empty").hidden = hull !== null;
-  part("space-empty").textContent = waiting;
-  part("space-stamp").textContent = spaceText();
-  part("hull-body").dataset.frames = hull?.frames ?? 0;
-  part("hull-body").dataset.run = state.run;
-  if (hull === null || hull.is_empty) return;
-  showExtents(part("extents"), hull.extents);
-  showLines(part("lines"), hull.lines);
-  part("lines-empty").hidden = hull.lines.length > 0;
-  showUnobserved(part("unobserved"), hull.unobserved);
-  showRows(part("hull-facts"), hullRows(hull, state.light));
-}
-
-function noHullText() {
-  if (state.hull === null) return "The hull appears with the first frame.";
-  if (state.hull.views === 0) return "There is no hull: no frame so far shows the target.";
-  return "The hull is empty: no point of the target lies inside every silhouette.";
-}
-
-function spaceText() {
-  if (state.hull === null) return "";
-  return `hull of ${views(state.hull.views)}, picture of frame ${state.shown}`;
 }
 
 /** Fetch and show the frame that the state names; one at a time, always ending at the latest. */
 async function bringFrame() {
-  if (isFetching) return;
+  if (isFetching || session.isBusy) return;
   isFetching = true;
   try {
     while (state.shown !== null && frameOnShow !== frameKey()) await fetchFrame(frameKey());
-    if (state.shown === null) clearFrame();
+    if (state.shown === null) {
+      frameOnShow = "";
+      panel.clear();
+    } else if (session.isBehind(state.frames_info?.[state.shown - 1]?.revision)) {
+      await session.refresh();
+    }
   } catch (error) {
-    if (!linkWasLost) complaint = error.message;
-    showBanner();
+    if (!linkWasLost) complain(error.message);
   } finally {
     isFetching = false;
   }
@@ -138,64 +170,47 @@ const frameKey = () => `${state.run}/${state.shown}`;
 
 async function fetchFrame(key) {
   const [run, number] = key.split("/").map(Number);
-  let frame, levels;
+  let answer;
   try {
-    [frame, levels] = await Promise.all([getJson(`/api/frames/${number}`), getLevels(number)]);
+    answer = await panel.fetch(number);
   } catch (error) {
     if (run === state.run) throw error;
   }
   // Restarted in the meantime: the frame belongs to a run that is over.
   if (run !== state.run) return;
   frameOnShow = key;
-  frameView.setWindow(part("zoom-target").ariaPressed === "true" ? state.window_m : null);
-  frameView.setFrame(frame, levels);
-  part("frame-empty").hidden = true;
-  part("frame-stamp").textContent = frameStamp(frame);
-  showNote(part("frame-note"), frame.note);
-  part("frame-canvas").dataset.frame = number;
-  showRows(part("frame-facts"), frameRows(frame));
+  proposals.discard();
+  editor.cancel();
+  toolbar.keepWindow();
+  panel.take(...answer);
 }
 
-function frameStamp({ number, label, time_s: time }) {
-  return [number, label, withUnit(time, 1, "s")].filter(Boolean).join(", ");
+function showEditing() {
+  toolbar?.update();
+  showBanner();
+  // News that came while somebody was drawing has waited.
+  if (state) bringFrame();
 }
 
-function clearFrame() {
-  frameOnShow = "";
-  frameView.clear();
-  part("frame-empty").hidden = false;
-  part("frame-stamp").textContent = "";
-  showNote(part("frame-note"), "");
-  part("frame-canvas").dataset.frame = 0;
-  part("frame-facts").replaceChildren();
-}
-
-function showReading(reading) {
-  const output = part("readout");
-  if (reading === null) {
-    output.textContent = "Point at the picture to read it.";
-    return;
-  }
-  const pairs = [
-    ["range", reading.range],
-    ["cross-range", reading.crossRange],
-    ["level", reading.level],
-  ];
-  output.replaceChildren(
-    ...pairs.flatMap(([name, value], index) => {
-      const bold = document.createElement("b");
-      bold.textContent = value;
-      return [`${index ? " · " : ""}${name} `, bold];
-    }),
-  );
+function showProposal(rings) {
+  scene.proposal = rings;
+  panel.redraw();
 }
 
 function showBanner() {
-  const text = linkWasLost
-    ? "The connection to the server is lost; trying again. What is on screen may be old."
-    : state?.message || complaint;
-  part("banner").textContent = text;
-  part("banner").hidden = !text;
+  const lost = "The connection to the server is lost; trying again. What is on screen may be old.";
+  const { conflict } = session;
+  if (linkWasLost) banner.show(lost);
+  else if (conflict) {
+    const what = conflict.isUnsaved
+      ? `Your outline of frame ${conflict.number} was not saved: the server did not answer.`
+      : `Frame ${conflict.number} was changed on another page meanwhile.`;
+    banner.show(`${what} The kept outline is on show, yours is the dashed one.`, [
+      ["Keep mine", () => session.keepMine()],
+      ["Take theirs", () => session.keepTheirs()],
+    ]);
+  } else if (state?.message) banner.show(state.message);
+  else banner.show(complaint, [["Dismiss", () => complain("")]]);
 }
 
 function showLink(link) {
@@ -212,20 +227,81 @@ function showLink(link) {
   showBanner();
 }
 
-function chooseZoom(isTarget) {
-  part("zoom-target").ariaPressed = String(isTarget);
-  part("zoom-whole").ariaPressed = String(!isTarget);
-  frameView.setWindow(isTarget ? state?.window_m ?? null : null);
+function openSheet() {
+  part("sheet").showModal();
 }
 
-part("zoom-target").addEventListener("click", () => chooseZoom(true));
-part("zoom-whole").addEventListener("click", () => chooseZoom(false));
-part("floor").addEventListener("input", (event) => {
-  const decibels = Number(event.target.value);
-  part("floor-value").textContent = withUnit(decibels, 0, "dB");
-  frameView.setFloor(decibels);
-});
-part("viewport").addEventListener("load", () => transport.listenIn(part("viewport")));
+/** Take an excluded frame back in, or exclude it. */
+function toggleExcluded() {
+  const info = state?.frames_info?.[state.shown - 1];
+  review.set(info?.state === "excluded" ? "todo" : "excluded");
+}
 
-frameView.setColours(await getJson("/api/colours"));
+function enter() {
+  if (!proposals.apply() && !editor.accept()) review.accept();
+}
+
+function escape() {
+  if (!editor.cancel() && !proposals.discard()) editor.choose("vertex");
+}
+
+const chooseTool = (name) => () => {
+  if (document.querySelector(`[data-tool=${name}]`).hidden) return;
+  proposals.discard();
+  editor.choose(name);
+};
+const drawing = ["vertex", "polygon", "lasso", "brush", "eraser", "livewire"];
+const proposing = ["threshold", "grow", "snap", "copy previous", "copy next", "reprojection"];
+const reviewing = ["todo", "ok", "fix"];
+const named = (names, make) => Object.fromEntries(names.map((name) => [name, make(name)]));
+
+toolbar.onTool((name) => chooseTool(name)());
+bindShortcuts(
+  {
+    ...named(drawing, chooseTool),
+    ...named(proposing, (key) => () => proposals.choose(key)),
+    ...named(reviewing, (name) => () => review.set(name)),
+    delete: () => editor.remove(),
+    smaller: () => toolbar.scaleBrush(1 / 1.25),
+    larger: () => toolbar.scaleBrush(1.25),
+    claim: () => toolbar.toggleClaim(),
+    undo: () => session.undo(),
+    redo: () => session.redo(),
+    enter,
+    escape,
+    excluded: toggleExcluded,
+    "page up": () => review.leaf(-1),
+    "page down": () => review.leaf(1),
+    "zoom in": () => view.zoom(1.25),
+    "zoom out": () => view.zoom(1 / 1.25),
+    fit: () => toolbar.fit(true),
+    ghost: () => panel.toggleGhost(),
+    overlay: () => panel.toggleHull(),
+    sheet: openSheet,
+  },
+  (isHidden) => {
+    scene.isHidden = isHidden;
+    panel.redraw();
+  },
+);
+// A button that was pressed with the pointer leaves the keys to the picture.
+document.addEventListener("click", (event) => {
+  if (event.detail > 0 && event.target.closest(".frame button, .tool-list button")) {
+    part("frame-canvas").focus({ preventScroll: true });
+  }
+});
+fillSheet(part("sheet-groups"));
+part("open-sheet").addEventListener("click", openSheet);
+listenInSpace(part("viewport"), (event) => {
+  if (event.key === "Escape") part("frame-canvas").focus();
+  else transport.onKeyInSpace(event);
+});
+resizablePanes(document.querySelector("main"), {
+  first: part("separator-first"),
+  third: part("separator-third"),
+});
+const [tools] = await Promise.all([getJson("/api/tools"), toolbar.chooseColours()]);
+proposals.offer(tools);
+toolbar.offer(tools);
+toolbar.update();
 keepLinked(showState, showLink);

@@ -1,21 +1,29 @@
 // Talking to the server: requests, and a link over which it tells of every change.
 
+import { rounded } from "./rings.js";
+
 const FIRST_RETRY_MS = 500;
 const LONGEST_RETRY_MS = 5000;
 
-/** Fetch JSON; an error carries the server's own sentence. */
+/** Fetch JSON; an error carries the server's own sentence, and its status. */
 export async function getJson(path) {
   return (await answered(path)).json();
 }
 
-/** Send an order as JSON and return the new state. */
-export async function order(path, body) {
+/** Send JSON by a method and return the answer. */
+export async function send(method, path, body) {
   const response = await answered(path, {
-    method: "POST",
+    method,
     headers: { "Content-Type": "application/json" },
-    body: JSON.stringify(body),
+    body: body === undefined ? undefined : JSON.stringify(body),
   });
   return response.json();
+}
+
+/** Ask what a tool would make of a frame's outline; changes nothing. */
+export function propose(number, tool, parameters, rings) {
+  const body = { tool, parameters, rings: rings.length > 0 ? rounded(rings) : null };
+  return send("POST", `/api/frames/${number}/proposals`, body);
 }
 
 /** Fetch a frame's levels: 16-bit numbers and what they mean in dB. */
@@ -52,10 +60,13 @@ export function keepLinked(onState, onLink) {
 }
 
 async function answered(path, options) {
-  const response = await fetch(path, options);
+  const response = await fetch(path, options).catch(() => {
+    throw new Error("The server does not answer; is it still running?");
+  });
   if (response.ok) return response;
   const { detail } = await response.json().catch(() => ({}));
-  throw new Error(detail ?? `The server answered ${response.status} to ${path}.`);
+  const error = new Error(detail ?? `The server answered ${response.status} to ${path}.`);
+  throw Object.assign(error, { status: response.status });
 }
 
 function littleEndian16(buffer) {

@@ -1,8 +1,10 @@
 // Play, pause, step, speed, restart, the row of frames, and the keys for them.
 
 import { timeText, views } from "./numbers.js";
+import { STATES } from "./review.js";
 
 const AS_FAST_AS_COMPUTED = "max";
+const TAP_MS = 500;
 
 export class Transport {
   #state = null;
@@ -10,8 +12,15 @@ export class Transport {
   #show;
   #parts;
 
-  /** Control playback through `send(order)` and choose the frame through `show(number or null)`. */
-  constructor(parts, send, show) {
+  #spaceSince = null;
+  #isSpaceUsed;
+
+  /**
+   * Control playback through `send(order)` and choose the frame through `show(number or null)`;
+   * `isSpaceUsed()` says whether the space bar moved the picture.
+   */
+  constructor(parts, send, show, isSpaceUsed) {
+    this.#isSpaceUsed = isSpaceUsed;
     this.#parts = parts;
     this.#send = send;
     this.#show = show;
@@ -22,6 +31,7 @@ export class Transport {
     parts.speed.addEventListener("change", () => send({ speed_hz: speedOf(parts.speed.value) }));
     parts.cells.addEventListener("click", (event) => this.#chooseCell(event));
     document.addEventListener("keydown", (event) => this.#onKey(event));
+    document.addEventListener("keyup", (event) => event.code === "Space" && this.#onSpaceUp());
   }
 
   update(state) {
@@ -39,13 +49,11 @@ export class Transport {
     this.#updateCells(state);
   }
 
-  /** Space in the viewport's frame plays and pauses too; its other keys move the camera. */
-  listenIn(frame) {
-    frame.contentWindow?.addEventListener("keydown", (event) => {
-      if (event.code !== "Space" || event.repeat) return;
-      event.preventDefault();
-      this.#togglePlay();
-    });
+  /** Space in the view in space plays and pauses too; its other keys move the camera. */
+  onKeyInSpace(event) {
+    if (event.code !== "Space" || event.repeat) return;
+    event.preventDefault();
+    this.#togglePlay();
   }
 
   #togglePlay() {
@@ -56,12 +64,19 @@ export class Transport {
   #onKey(event) {
     const field = event.target.closest?.("input, select, button, textarea");
     if (event.ctrlKey || event.metaKey || event.altKey || this.#state === null) return;
-    if (field?.matches("input, select, textarea")) return;
-    if (event.code === "Space" && !field && !event.repeat) this.#togglePlay();
+    if (field?.matches("input, select, textarea") || event.target.closest?.("dialog")) return;
+    if (event.code === "Space" && !field) this.#spaceSince ??= event.timeStamp;
     else if (event.code === "ArrowRight") this.#nextFrame();
     else if (event.code === "ArrowLeft") this.#previousFrame();
     else return;
     event.preventDefault();
+  }
+
+  /** The space bar plays and pauses when tapped; held it moves the picture. */
+  #onSpaceUp() {
+    const isTapped = this.#spaceSince !== null && performance.now() - this.#spaceSince < TAP_MS;
+    this.#spaceSince = null;
+    if (isTapped && !this.#isSpaceUsed()) this.#togglePlay();
   }
 
   #nextFrame() {
@@ -108,6 +123,7 @@ function updateCell(cell, number, state) {
     cell.removeAttribute("role");
     cell.removeAttribute("title");
     delete cell.dataset.number;
+    delete cell.dataset.state;
     return;
   }
   cell.id = `frame-${number}`;
@@ -115,7 +131,12 @@ function updateCell(cell, number, state) {
   cell.role = "option";
   cell.ariaSelected = String(number === state.shown);
   const time = timeText(state.times_s[number - 1], state.labels[number - 1]);
-  cell.title = `Frame ${number}, ${time}`;
+  const info = state.frames_info?.[number - 1];
+  cell.dataset.state = info?.state ?? "todo";
+  cell.classList.toggle("edited", Boolean(info?.edited));
+  const review = cell.dataset.state === "todo" ? [] : [STATES[cell.dataset.state]];
+  const words = [`Frame ${number}`, time, ...review, ...(info?.edited ? ["edited"] : [])];
+  cell.title = words.join(", ");
   cell.ariaLabel = cell.title;
 }
 

@@ -1,8 +1,10 @@
 import numpy as np
+import pytest
 
 from app.pictures import (
     FLOOR_DB,
     STEP_DB,
+    ColourName,
     colour_index,
     colour_table,
     encoded_levels,
@@ -30,13 +32,19 @@ def test_encoded_levels_give_the_decibels_back() -> None:
     np.testing.assert_allclose(level_db, [[0, -6.0206], [-60, -100]], atol=STEP_DB)
 
 
-def test_colours_grow_lighter_all_the_way() -> None:
-    table = colour_table().astype(float)
+@pytest.mark.parametrize(
+    ("name", "darkest", "lightest"),
+    [("magma", 2, 240), ("viridis", 25, 215), ("cividis", 35, 220), ("grey", 1, 254)],
+)
+def test_colours_grow_lighter_all_the_way(
+    name: ColourName, darkest: float, lightest: float
+) -> None:
+    table = colour_table(name).astype(float)
     assert table.shape == (256, 3)
     luminance = table @ [0.2126, 0.7152, 0.0722]
     assert np.all(np.diff(luminance) > -0.5)
-    assert luminance[0] < 2
-    assert luminance[-1] > 240
+    assert luminance[0] < darkest
+    assert luminance[-1] > lightest
 
 
 def test_colour_index_spans_the_floor_to_the_peak() -> None:

@@ -1,0 +1,42 @@
+// The hull's panel: extents, lines, surface, or why there is none.
+
+import {
+  afterFrames,
+  hullRows,
+  showExtents,
+  showLines,
+  showRows,
+  showUnobserved,
+} from "./facts-view.js";
+import { views } from "./numbers.js";
+
+const part = (id) => document.getElementById(id);
+
+/** Show the state's hull in its panel, and name it over the view in space. */
+export function showHull(state) {
+  const { hull } = state;
+  const waiting = state.status === "failed" ? "No frame arrived." : "Preparing the first frame…";
+  part("hull-body").hidden = hull === null || hull.is_empty;
+  part("hull-empty").hidden = hull !== null && !hull.is_empty;
+  part("hull-empty").textContent = noHullText(hull);
+  part("hull-stamp").textContent = hull === null ? "" : afterFrames(hull.frames);
+  part("space-empty").hidden = hull !== null;
+  part("space-empty").textContent = waiting;
+  part("space-stamp").textContent =
+    hull === null ? "" : `hull of ${views(hull.views)}, picture of frame ${state.shown}`;
+  part("hull-body").dataset.frames = hull?.frames ?? 0;
+  part("hull-body").dataset.run = state.run;
+  part("hull-body").dataset.revision = hull?.revision ?? 0;
+  if (hull === null || hull.is_empty) return;
+  showExtents(part("extents"), hull.extents);
+  showLines(part("lines"), hull.lines);
+  part("lines-empty").hidden = hull.lines.length > 0;
+  showUnobserved(part("unobserved"), hull.unobserved);
+  showRows(part("hull-facts"), hullRows(hull, state.light, state.latency_ms?.last ?? null));
+}
+
+function noHullText(hull) {
+  if (hull === null) return "The hull appears with the first frame.";
+  if (hull.views === 0) return "There is no hull: no frame so far shows the target.";
+  return "The hull is empty: no point of the target lies inside every silhouette.";
+}

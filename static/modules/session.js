@@ -1,0 +1,212 @@
+// The outline on show: what the server keeps of it, and what has been drawn since.
+
+import { Latest } from "./latest.js";
+import { copied, rounded, sameRings } from "./rings.js";
+import { getJson, send } from "./server.js";
+
+const PREVIEW_PAUSE_MS = 30;
+
+export class Session {
+  frame = null;
+  rings = [];
+  claim = "lit side";
+  /** Whether somebody is drawing, so that news from the server must wait. */
+  isBusy = false;
+  /** The outline that lost to another page's, or was not saved, until it is kept or given up. */
+  conflict = null;
+  #revisions = new Map();
+  #pending = 0;
+  #chain = Promise.resolve();
+  #hasPreview = false;
+  #onChange;
+  #onComplaint;
+  #preview = new Latest((wish) => this.#sendPreview(wish), PREVIEW_PAUSE_MS);
+
+  /** Call `onChange()` after each change and `onComplaint(sentence)` for what the server refuses. */
+  constructor(onChange, onComplaint) {
+    this.#onChange = onChange;
+    this.#onComplaint = onComplaint;
+  }
+
+  get isEditable() {
+    return this.frame?.silhouette.revision !== undefined;
+  }
+
+  get isSaving() {
+    return this.#pending > 0;
+  }
+
+  /** Take a frame as the server gives it. */
+  adopt(frame) {
+    if (this.frame && this.frame.number !== frame.number) this.conflict = null;
+    this.frame = frame;
+    this.rings = copied(frame.silhouette.rings);
+    this.claim = frame.silhouette.claim;
+    this.#revisions.set(frame.number, frame.silhouette.revision);
+    this.#onChange();
+  }
+
+  clear() {
+    this.frame = null;
+    this.rings = [];
+    this.conflict = null;
+    this.#onChange();
+  }
+
+  /** Whether the server has a newer outline of the frame on show than this page. */
+  isBehind(revision) {
+    return this.isEditable && !this.isBusy && !this.isSaving && this.conflict === null &&
+      revision > this.#revisions.get(this.frame.number);
+  }
+
+  /** Change the outline on the page, and let the hull follow without keeping it. */
+  sketch(rings, tool) {
+    this.rings = rings;
+    this.preview(rings, tool);
+    this.#onChange();
+  }
+
+  /** Let the hull follow an outline that is not even the page's. */
+  preview(rings, tool, claim = this.claim) {
+    if (!this.isEditable) return;
+    this.#hasPreview = true;
+    this.#preview.ask({ number: this.frame.number, ...this.#body(rings, claim, tool) });
+  }
+
+  /** Take a preview back. */
+  async withdraw() {
+    if (!this.#hasPreview) return;
+    const { number } = this.frame;
+    this.#hasPreview = false;
+    await this.#preview.stop();
+    await send("DELETE", `/api/frames/${number}/preview`).catch((error) => {
+      this.#onComplaint(error.message);
+    });
+  }
+
+  /** Keep an outline: on the page at once, on the server as soon as it answers. */
+  commit(rings, tool, claim = this.claim) {
+    if (!this.isEditable) return this.#chain;
+    const { number, silhouette } = this.frame;
+    const isSame = claim === silhouette.claim && sameRings(rings, silhouette.rings);
+    this.rings = rings;
+    this.claim = claim;
+    this.#onChange();
+    if (isSame && !this.isSaving) return this.withdraw();
+    const job = { number, ...this.#body(rings, claim, tool) };
+    return this.#queue(() => this.#save(job));
+  }
+
+  undo() {
+    return this.#travel("undo");
+  }
+
+  redo() {
+    return this.#travel("redo");
+  }
+
+  /** After a conflict: put this page's outline over the other one. */
+  keepMine() {
+    const mine = this.conflict;
+    this.conflict = null;
+    if (mine && mine.number === this.frame?.number) this.commit(mine.rings, mine.tool, mine.claim);
+  }
+
+  keepTheirs() {
+    this.conflict = null;
+    this.#onChange();
+  }
+
+  /** Get the outline on show anew. */
+  async refresh() {
+    const { number } = this.frame;
+    try {
+      this.#arrive(await getJson(`/api/frames/${number}`));
+    } catch (error) {
+      this.#onComplaint(error.message);
+    }
+  }
+
+  #travel(direction) {
+    if (!this.isEditable || this.isBusy) return this.#chain;
+    const { number } = this.frame;
+    return this.#queue(async () => {
+      await this.#preview.stop();
+      const body = { base_revision: this.#revisions.get(number) };
+      return send("POST", `/api/frames/${number}/${direction}`, body);
+    });
+  }
+
+  /** Do `work`, which gives a frame, after what is already being saved. */
+  #queue(work) {
+    this.#pending += 1;
+    this.#chain = this.#chain.then(async () => {
+      let frame;
+      try {
+        frame = await work();
+      } catch (error) {
+        this.#onComplaint(error.message);
+        // What the server refuses is not on it; the page goes back to what is.
+        const path = `/api/frames/${this.frame?.number}`;
+        frame = error.status ? await getJson(path).catch(() => undefined) : undefined;
+      }
+      this.#pending -= 1;
+      if (frame) this.#arrive(frame);
+      this.#onChange();
+    });
+    return this.#chain;
+  }
+
+  async #save({ number, ...body }) {
+    if (this.conflict?.number === number) {
+      // What was drawn after the lost outline is the one to keep.
+      this.conflict = { ...this.conflict, ...body };
+      return undefined;
+    }
+    // A preview that came after what it previews would stand in its place.
+    await this.#preview.stop();
+    this.#hasPreview = false;
+    body.base_revision = this.#revisions.get(number);
+    try {
+      return await send("PUT", `/api/frames/${number}/silhouette`, body);
+    } catch (error) {
+      if (error.status === undefined) {
+        this.conflict = { number, ...body, isUnsaved: true };
+        return undefined;
+      }
+      if (error.status !== 409) throw error;
+      return this.#lose({ number, ...body });
+    }
+  }
+
+  async #lose(mine) {
+    const theirs = await getJson(`/api/frames/${mine.number}`);
+    if (this.frame?.number === mine.number) this.conflict = mine;
+    return theirs;
+  }
+
+  #arrive(frame) {
+    this.#revisions.set(frame.number, frame.silhouette.revision);
+    if (this.frame?.number !== frame.number) return;
+    // What is being drawn, or waits to be saved, is newer than this answer.
+    if (this.isBusy || this.isSaving) this.frame = frame;
+    else this.adopt(frame);
+  }
+
+  async #sendPreview({ number, ...body }) {
+    await send("PUT", `/api/frames/${number}/preview`, body).catch((error) => {
+      // A crossed outline in the middle of a drag is nothing to complain of.
+      if (error.status === undefined) this.#onComplaint(error.message);
+    });
+  }
+
+  #body(rings, claim, tool) {
+    return {
+      rings: rounded(rings),
+      claim,
+      component: this.frame.silhouette.component ?? "target",
+      tool,
+      base_revision: this.#revisions.get(this.frame.number),
+    };
+  }
+}
