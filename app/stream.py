@@ -97,6 +97,8 @@ class LiveStream:
             self._stopping = True
             self._changed.notify_all()
         self._forget_preview_end()
+        if self._preview_end is not None:
+            self._preview_end.join(timeout_s)
         self._observers.dismiss(timeout_s)
         if self._thread.is_alive():
             self._thread.join(timeout_s)
