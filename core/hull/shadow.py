@@ -14,6 +14,7 @@ import shapely
 
 from core.arrays import Floats
 from core.hull.view import View
+from core.silhouettes.areas import rings_of
 from core.silhouettes.silhouette import Silhouette, clockwise_area_px
 
 CarvingRule = Literal["shadow", "strict"]
@@ -80,18 +81,3 @@ def _edge_shadows(ring: Floats, far_row: float | Floats) -> Floats:
     tail = tail[keep]
     quadrilaterals: Floats = np.stack([*corners, tail], axis=1)
     return quadrilaterals
-
-
-def rings_of(geometry: shapely.Geometry) -> tuple[Floats, ...]:
-    """Return the rings of a polygonal geometry in (row, column): outer clockwise, holes not."""
-    rings: list[Floats] = []
-    for part in shapely.get_parts(geometry):
-        if part.geom_type != "Polygon" or part.is_empty:
-            continue
-        rings.append(_turned(np.asarray(part.exterior.coords)[:-1], clockwise=True))
-        rings += [_turned(np.asarray(hole.coords)[:-1], clockwise=False) for hole in part.interiors]
-    return tuple(rings)
-
-
-def _turned(ring: Floats, *, clockwise: bool) -> Floats:
-    return ring if (clockwise_area_px(ring) > 0) == clockwise else ring[::-1]
