@@ -383,7 +383,16 @@ def test_the_temple_needs_its_photographs(capsys, tmp_path):
 
 def test_telescope_frames_go_beside_the_echoes_and_stay_when_they_are_imaged(tmp_path):
     simulated, imaged = tmp_path / "dusk.h5", tmp_path / "imaged.h5"
-    when = ["--start", "2016-03-24T10:00:00", "--mask-deg", "30", "--prf-hz", "60", "--frequency-count", "256"]
+    when = [
+        "--start",
+        "2016-03-24T10:00:00",
+        "--mask-deg",
+        "30",
+        "--prf-hz",
+        "60",
+        "--frequency-count",
+        "256",
+    ]
     main(["simulate", str(simulated), "--scatterers", "300", "--optical", "2", *when])
     recorded = read_pass(simulated)
     assert [frame.sensor for frame in recorded.frames] == ["optical", "optical"]
