@@ -102,6 +102,8 @@ def stroke_area(points_px: npt.ArrayLike, radius_px: float) -> shapely.Geometry:
     # A chord over an angle of 2a stays r(1 − cos a) ≈ r a²/2 within the circle.
     half_angle_rad = np.sqrt(2 * ROUNDNESS_PX / radius_px)
     segments = max(int(np.ceil(np.pi / 4 / half_angle_rad)), 4)
+    # To a millionth of a pixel: GEOS stumbles over steps of no length that is not quite zero.
+    points = np.round(points, 6)
     line = shapely.LineString(points) if len(points) > 1 else shapely.Point(points[0])
     return shapely.buffer(line, radius_px, quad_segs=segments)
 
