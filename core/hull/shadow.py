@@ -14,7 +14,7 @@ import shapely
 
 from core.arrays import Floats
 from core.hull.view import View
-from core.silhouettes.areas import rings_of
+from core.silhouettes.areas import area_of, rings_of
 from core.silhouettes.silhouette import Silhouette, clockwise_area_px
 
 CarvingRule = Literal["shadow", "strict"]
@@ -54,6 +54,20 @@ def filled_away_from_radar(silhouette: Silhouette) -> Silhouette:
         component=silhouette.component,
         provenance=f"{silhouette.provenance}, filled away from the radar".lstrip(", "),
     )
+
+
+def shadow_region(silhouette: Silhouette) -> tuple[Floats, ...]:
+    """Return the rings around what the shadow rule adds to a silhouette within its image.
+
+    It is there to be hatched: what the radar cannot know to be empty, and no part of the outline.
+    A silhouette that claims to be complete has none.
+    """
+    if silhouette.claim == "complete" or silhouette.is_empty:
+        return ()
+    rows, columns = silhouette.image_shape
+    image = shapely.box(-0.5, -0.5, rows - 0.5, columns - 0.5)
+    filled = shapely.intersection(area_of(filled_away_from_radar(silhouette).rings), image)
+    return rings_of(shapely.difference(filled, area_of(silhouette.rings)))
 
 
 def filled_as_far_as(silhouette: Silhouette, reach_rows: float) -> Silhouette:
