@@ -13,8 +13,15 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from app.snapshot import Record, Snapshot
 from core.arrays import Floats
-from core.hull.reprojection import reprojected_mask
-from core.silhouettes.contours import traced_rings
+from core.frame import Frame
+from core.hull.reprojection import reprojected_rings as hull_image
+from core.silhouettes.editing.brush import combined_rings
+from core.silhouettes.editing.grabcut import grab_cut
+from core.silhouettes.editing.growing import grown
+from core.silhouettes.editing.livewire import livewire
+from core.silhouettes.editing.smoothing import simplified, smoothed, without_holes
+from core.silhouettes.editing.snapping import snapped
+from core.silhouettes.editing.transfer import copied, interpolated
 from core.silhouettes.extraction import ExtractionSettings, extract_silhouette
 from core.silhouettes.silhouette import Claim, Silhouette
 
@@ -87,6 +94,44 @@ class CopyParameters(Parameters):
     source: int = Field(alias="from")
 
 
+class GrowParameters(Parameters):
+    """Where a region grows from, and how far the level may fall."""
+
+    row: float
+    column: float
+    tolerance_db: float = Field(default=6.0, gt=0, le=120)
+
+
+class LivewireParameters(Parameters):
+    """Anchors of a path along an edge, each (row, column)."""
+
+    points: list[tuple[float, float]] = Field(min_length=2, max_length=200)
+
+
+class SnapParameters(Parameters):
+    """How far a vertex may move."""
+
+    reach_px: float = Field(default=4.0, gt=0, le=50)
+
+
+class SmoothParameters(Parameters):
+    """How strongly wiggles are taken out."""
+
+    strength_px: float = Field(default=1.5, gt=0, le=50)
+
+
+class SimplifyParameters(Parameters):
+    """How far the outline may move."""
+
+    tolerance_px: float = Field(default=0.5, gt=0, le=50)
+
+
+class InterpolateParameters(Parameters):
+    """Between which two frames' outlines."""
+
+    ends: tuple[int, int] = Field(alias="from")
+
+
 Chosen = TypeVar("Chosen", bound=Parameters)
 
 
@@ -128,8 +173,7 @@ def reprojected_rings(snapshot: Snapshot, record: Record) -> tuple[Floats, ...]:
     if snapshot.surface is None or snapshot.surface.is_empty:
         return ()
     frame = record.frame
-    mask = reprojected_mask(snapshot.surface, frame.projection, frame.shape)
-    return traced_rings(mask.astype(np.float32), 0.5) if mask.any() else ()
+    return hull_image(snapshot.surface, frame.projection, frame.shape, finer=2)
 
 
 def _threshold(question: Question, chosen: ThresholdParameters) -> Proposal:
@@ -145,23 +189,61 @@ def _fields(settings: ExtractionSettings) -> dict[str, Any]:
     return {name: getattr(settings, name) for name in settings.__dataclass_fields__}
 
 
+def _record(question: Question, number: int) -> Record:
+    records = question.snapshot.records
+    if not 1 <= number <= len(records):
+        raise ValueError(
+            f"There is no frame {number} to copy from; {len(records)} have arrived so far."
+        )
+    return records[number - 1]
+
+
 def _copy(question: Question, chosen: CopyParameters) -> Proposal:
     """Copy another frame's outline so that the target's origin stays under it."""
-    records = question.snapshot.records
-    if not 1 <= chosen.source <= len(records):
-        raise ValueError(
-            f"There is no frame {chosen.source} to copy from; {len(records)} have arrived so far."
-        )
-    other = records[chosen.source - 1]
-    origin = np.zeros(3)
-    shift = question.record.frame.projection.image_points(origin)
-    shift = shift - other.frame.projection.image_points(origin)
-    rings = tuple(ring + shift for ring in other.silhouette.rings)
-    return Proposal(
-        rings=rings,
-        claim=other.silhouette.claim,
-        note="" if rings else f"Frame {chosen.source} shows no target.",
+    other = _record(question, chosen.source)
+    if other.silhouette.is_empty:
+        note = f"Frame {chosen.source} shows no target."
+        return Proposal(rings=(), claim=other.silhouette.claim, note=note)
+    rings = copied(other.silhouette.rings, other.frame, question.record.frame)
+    return Proposal(rings=rings, claim=other.silhouette.claim)
+
+
+def _interpolate(question: Question, chosen: InterpolateParameters) -> Proposal:
+    before, after = (_record(question, number) for number in chosen.ends)
+    rings = interpolated(
+        before.silhouette.rings,
+        before.frame,
+        after.silhouette.rings,
+        after.frame,
+        question.record.frame,
     )
+    return Proposal(rings=rings, claim=before.silhouette.claim)
+
+
+def _grow(question: Question, chosen: GrowParameters) -> Proposal:
+    """Add the region that grows from a place to the outline as drawn."""
+    frame = question.record.frame
+    region = grown(frame, (chosen.row, chosen.column), chosen.tolerance_db)
+    drawn = question.drawn
+    joined = combined_rings(drawn.rings, region, "add") if drawn.rings else region
+    return Proposal(rings=joined, claim=drawn.claim)
+
+
+def _livewire(question: Question, chosen: LivewireParameters) -> Proposal:
+    path = livewire(question.record.frame, np.array(chosen.points))
+    return Proposal(rings=question.drawn.rings, claim=question.drawn.claim, path=path)
+
+
+def _redrawn(change: Callable[[Silhouette, Frame, Any], tuple[Floats, ...]]) -> Any:
+    """Return the tool that changes the outline as drawn; without one there is nothing to change."""
+
+    def propose(question: Question, chosen: Any) -> Proposal:
+        if question.drawn.is_empty:
+            raise ValueError("This frame has no outline to change; draw one first.")
+        rings = change(question.drawn, question.record.frame, chosen)
+        return Proposal(rings=rings, claim=question.drawn.claim)
+
+    return propose
 
 
 def _reprojection(question: Question, _: NoParameters) -> Proposal:
@@ -175,7 +257,24 @@ def _reprojection(question: Question, _: NoParameters) -> Proposal:
 
 TOOLS: dict[str, Tool[Any]] = {
     "threshold": Tool(ThresholdParameters, _threshold),
+    "grow": Tool(GrowParameters, _grow),
+    "livewire": Tool(LivewireParameters, _livewire),
+    "grabcut": Tool(NoParameters, _redrawn(lambda drawn, frame, _: grab_cut(drawn.rings, frame))),
+    "snap": Tool(
+        SnapParameters,
+        _redrawn(lambda drawn, frame, chosen: snapped(drawn.rings, frame, chosen.reach_px)),
+    ),
+    "smooth": Tool(
+        SmoothParameters,
+        _redrawn(lambda drawn, _, chosen: smoothed(drawn.rings, chosen.strength_px)),
+    ),
+    "simplify": Tool(
+        SimplifyParameters,
+        _redrawn(lambda drawn, _, chosen: simplified(drawn.rings, chosen.tolerance_px)),
+    ),
+    "fill holes": Tool(NoParameters, _redrawn(lambda drawn, _frame, _: without_holes(drawn.rings))),
     "copy": Tool(CopyParameters, _copy),
+    "interpolate": Tool(InterpolateParameters, _interpolate),
     "reprojection": Tool(NoParameters, _reprojection),
 }
 

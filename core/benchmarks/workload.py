@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 from core.arrays import Floats
 from core.geometry.grid import VoxelGrid
 from core.geometry.projection import Projection
-from core.hull.shadow import rings_of
 from core.hull.view import View
+from core.silhouettes.areas import rings_of
 from core.silhouettes.silhouette import Silhouette
 
 IMAGE_SIDE_PX = 512

@@ -5,7 +5,7 @@ import shapely
 import trimesh
 
 from core.geometry.projection import Projection
-from core.hull.shadow import rings_of
+from core.silhouettes.areas import rings_of
 from core.silhouettes.silhouette import Silhouette
 
 

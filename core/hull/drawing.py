@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from core.arrays import Floats, frozen
 from core.hull.outline import closed_rings, enclosed_area, what_was_repaired
 from core.hull.outset import prepared
-from core.hull.shadow import rings_of
+from core.silhouettes.areas import rings_of
 from core.silhouettes.silhouette import Claim, Silhouette
 
 MOST_RINGS = 200

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from core.arrays import Floats
 from core.hull.outset import outset, prepared
-from core.hull.shadow import rings_of
+from core.silhouettes.areas import area_of, rings_of
 from core.silhouettes.silhouette import Silhouette, clockwise_area_px
 
 OUTSET_PX = 1e-7
@@ -83,12 +83,8 @@ def enclosed_area(
         ValueError: they enclose none.
     """
     parts = [shapely.make_valid(shapely.Polygon(ring)) for ring in rings]
-    solid = [clockwise_area_px(ring) > 0 or len(rings) == 1 for ring in rings]
-    outer = shapely.union_all([part for part, keep in zip(parts, solid, strict=True) if keep])
-    holes = shapely.union_all([part for part, keep in zip(parts, solid, strict=True) if not keep])
-    area = shapely.union_all(
-        [part for part in shapely.get_parts(shapely.difference(outer, holes)) if part.area > 0]
-    )
+    enclosed = shapely.get_parts(area_of(rings))
+    area = shapely.union_all([part for part in enclosed if part.area > 0])
     if area.is_empty:
         raise ValueError(
             "The outline encloses no area: its vertices coincide or lie on one line. "

@@ -8,6 +8,7 @@ from core.arrays import Floats
 from core.geometry.projection import Projection
 from core.hull.surface import Surface
 from core.hull.threads import Compiled
+from core.silhouettes.contours import traced_rings
 
 
 def reprojected_mask(
@@ -18,6 +19,39 @@ def reprojected_mask(
     image = np.ascontiguousarray(projection.image_points(surface.vertices_m))
     _cover(image, surface.faces, mask)
     return mask
+
+
+def reprojected_rings(
+    surface: Surface, projection: Projection, image_shape: tuple[int, int], *, finer: int = 4
+) -> tuple[Floats, ...]:
+    """Return the outline of a surface's image, to seed a silhouette or to be compared with one.
+
+    It is traced from a raster with `finer` × `finer` pixels to each of the image's: whatever lies
+    further than 1 / `finer` pixels from the true outline is on the right side of it.
+
+    Args:
+        surface: of the hull.
+        projection: of the frame.
+        image_shape: (rows, columns).
+        finer: how many times finer than the image's the raster is.
+
+    Raises:
+        ValueError: a raster that is not 1 to 8 times finer.
+    """
+    if not 1 <= finer <= 8:
+        raise ValueError(f"The raster may be 1 to 8 times finer than the image, not {finer}.")
+    # Pixel centres at integers: (finer − 1) / 2 is the fine raster's place of the coarse origin.
+    shift = (finer - 1) / 2
+    matrix = projection.matrix.copy()
+    if projection.is_affine:
+        matrix[:2] *= finer
+        matrix[:2, 3] += shift
+    else:
+        matrix[:2] = finer * matrix[:2] + shift * matrix[2]
+    fine_shape = (finer * image_shape[0], finer * image_shape[1])
+    mask = reprojected_mask(surface, Projection(matrix=matrix), fine_shape)
+    rings = traced_rings(mask.astype(np.float32), 0.5, simplification_px=0.3)
+    return tuple((ring - shift) / finer for ring in rings)
 
 
 @numba.njit(**Compiled)  # type: ignore[untyped-decorator]

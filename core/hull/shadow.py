@@ -14,6 +14,7 @@ import shapely
 
 from core.arrays import Floats
 from core.hull.view import View
+from core.silhouettes.areas import area_of, rings_of
 from core.silhouettes.silhouette import Silhouette, clockwise_area_px
 
 CarvingRule = Literal["shadow", "strict"]
@@ -55,6 +56,20 @@ def filled_away_from_radar(silhouette: Silhouette) -> Silhouette:
     )
 
 
+def shadow_region(silhouette: Silhouette) -> tuple[Floats, ...]:
+    """Return the rings around what the shadow rule adds to a silhouette within its image.
+
+    It is there to be hatched: what the radar cannot know to be empty, and no part of the outline.
+    A silhouette that claims to be complete has none.
+    """
+    if silhouette.claim == "complete" or silhouette.is_empty:
+        return ()
+    rows, columns = silhouette.image_shape
+    image = shapely.box(-0.5, -0.5, rows - 0.5, columns - 0.5)
+    filled = shapely.intersection(area_of(filled_away_from_radar(silhouette).rings), image)
+    return rings_of(shapely.difference(filled, area_of(silhouette.rings)))
+
+
 def filled_as_far_as(silhouette: Silhouette, reach_rows: float) -> Silhouette:
     """Return the silhouette joined with what lies behind it up to `reach_rows` along the rows."""
     if silhouette.is_empty:
@@ -80,18 +95,3 @@ def _edge_shadows(ring: Floats, far_row: float | Floats) -> Floats:
     tail = tail[keep]
     quadrilaterals: Floats = np.stack([*corners, tail], axis=1)
     return quadrilaterals
-
-
-def rings_of(geometry: shapely.Geometry) -> tuple[Floats, ...]:
-    """Return the rings of a polygonal geometry in (row, column): outer clockwise, holes not."""
-    rings: list[Floats] = []
-    for part in shapely.get_parts(geometry):
-        if part.geom_type != "Polygon" or part.is_empty:
-            continue
-        rings.append(_turned(np.asarray(part.exterior.coords)[:-1], clockwise=True))
-        rings += [_turned(np.asarray(hole.coords)[:-1], clockwise=False) for hole in part.interiors]
-    return tuple(rings)
-
-
-def _turned(ring: Floats, *, clockwise: bool) -> Floats:
-    return ring if (clockwise_area_px(ring) > 0) == clockwise else ring[::-1]

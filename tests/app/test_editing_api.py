@@ -241,3 +241,50 @@ def test_tools_refuse_in_a_sentence(page, tool, parameters, sentence) -> None:
     response = propose(page, tool, **parameters)
     assert response.status_code == 422
     assert sentence in response.json()["detail"]
+
+
+@pytest.mark.parametrize(
+    ("tool", "parameters"),
+    [
+        ("grow", {"row": None, "column": None, "tolerance_db": 3}),
+        ("snap", {"reach_px": 3}),
+        ("smooth", {"strength_px": 1}),
+        ("simplify", {"tolerance_px": 0.5}),
+        ("fill holes", {}),
+        ("interpolate", {"from": [1, 2]}),
+    ],
+)
+def test_every_tool_proposes_an_outline_and_changes_nothing(page, tool, parameters) -> None:
+    before = page.get("/api/frames/1").json()["silhouette"]
+    if "row" in parameters:
+        row, column = np.mean(before["rings"][0], axis=0)
+        parameters = {**parameters, "row": row, "column": column}
+    asked = {"tool": tool, "parameters": parameters, "rings": before["rings"]}
+    answer = page.post("/api/frames/1/proposals", json=asked)
+    assert answer.status_code == 200, answer.text
+    assert all(len(ring) >= 3 for ring in answer.json()["rings"])
+    assert answer.json()["rings"]
+    assert page.get("/api/frames/1").json()["silhouette"] == before
+
+
+def test_livewire_proposes_a_path(page) -> None:
+    ring = page.get("/api/frames/1").json()["silhouette"]["rings"][0]
+    asked = {"tool": "livewire", "parameters": {"points": [ring[0], ring[len(ring) // 3]]}}
+    path = page.post("/api/frames/1/proposals", json={**asked, "rings": [ring]}).json()["path"]
+    assert len(path) > 2
+    assert np.hypot(*np.subtract(path[0], ring[0])) < 3
+
+
+def test_a_tool_that_changes_an_outline_needs_one(page) -> None:
+    asked = {"tool": "smooth", "parameters": {}, "rings": []}
+    answer = page.post("/api/frames/1/proposals", json=asked)
+    assert answer.status_code == 422
+    assert "draw one first" in answer.json()["detail"]
+
+
+def test_grabcut_is_for_photographs(page) -> None:
+    ring = page.get("/api/frames/1").json()["silhouette"]["rings"][0]
+    asked = {"tool": "grabcut", "parameters": {}, "rings": [ring]}
+    answer = page.post("/api/frames/1/proposals", json=asked)
+    assert answer.status_code == 422
+    assert "comes from a radar" in answer.json()["detail"]

@@ -1,9 +1,13 @@
 """What a hull cannot be carved from is refused in one sentence, or repaired and said."""
 
+import itertools
+
 import numpy as np
 import pytest
 
 from core.geometry.projection import Projection, range_doppler_projection
+from core.hull.outline import outline_of
+from core.hull.polygon_test import votes_of
 from core.hull.surface import hull_surface
 from core.hull.view import View
 from core.hull.volume import VoteVolume
@@ -99,3 +103,14 @@ def test_a_refused_view_leaves_the_volume_as_it_was():
     assert np.array_equal(volume.votes, before)
     assert volume.revision == revision
     assert volume.view_count == 3
+
+
+def test_a_part_within_a_hole_that_touches_its_ring_still_votes():
+    hole = np.array([[0.0, 5.0], [8.0, 2.0], [8.0, 8.0]])  # touches the ring at (0, 5)
+    ring = np.array([[0.0, 0.0], [0.0, 10.0], [10.0, 10.0], [10.0, 0.0]])
+    island = np.array([[5.0, 4.0], [5.0, 6.0], [7.0, 5.0]])
+    rings = (ring, hole, island)
+    outline = outline_of(Silhouette(rings=rings, image_shape=(20, 20), claim="complete"))
+    closed = [outline.points[a:b] for a, b in itertools.pairwise(outline.offsets)]
+    inside = votes_of(np.array([[6.0, 5.0], [4.0, 5.0], [9.0, 5.0]]), tuple(closed))
+    assert inside.tolist() == [True, False, True]

@@ -1,10 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from core.geometry.projection import range_doppler_projection
-from core.hull.shadow import carving_view, filled_away_from_radar
+from core.hull.shadow import carving_view, filled_away_from_radar, shadow_region
 from core.hull.view import View
 from core.silhouettes.contours import traced_rings
 from core.silhouettes.silhouette import Silhouette
@@ -50,3 +52,15 @@ def test_only_lit_sides_are_filled_and_only_by_the_shadow_rule(seed):
     assert carving_view(complete, "shadow") is complete
     assert carving_view(lit, "shadow").silhouette.area_px() > lit.silhouette.area_px()
     assert carving_view(lit, "shadow").silhouette.claim == "complete"
+
+
+@settings(max_examples=40, deadline=None)
+@given(mask=arrays(bool, (8, 10)))
+def test_the_shadow_to_be_hatched_is_what_filling_adds_within_the_image(mask):
+    silhouette = silhouette_of(mask)
+    hatched = silhouette_of(mask * False)
+    hatched = replace(hatched, rings=shadow_region(silhouette))
+    filled = filled_away_from_radar(silhouette)
+    assert np.array_equal(hatched.mask(), filled.mask() & ~mask)
+    assert all(ring[:, 0].max() <= 7.5 for ring in hatched.rings)
+    assert shadow_region(filled) == ()

@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 
 from core.geometry.grid import VoxelGrid
 from core.geometry.projection import Projection
-from core.hull.shadow import rings_of
 from core.hull.view import View
+from core.silhouettes.areas import rings_of
 from core.silhouettes.silhouette import Silhouette
 
 LATTICE = VoxelGrid(origin_m=np.array([-6.0, -5.0, -6.0]), spacing_m=1.0, shape=(13, 11, 12))

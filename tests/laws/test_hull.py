@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 from core.geometry.grid import VoxelGrid
 from core.geometry.projection import Projection
-from core.hull.shadow import rings_of
 from core.hull.surface import hull_surface
 from core.hull.view import View
 from core.hull.volume import VoteVolume
+from core.silhouettes.areas import rings_of
 from core.silhouettes.silhouette import Silhouette
 from tests.laws.outlines import LATTICE, lattice_projections, lattice_views
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import shapely
 
-from core.hull.shadow import rings_of
 from core.hull.view import View
+from core.silhouettes.areas import rings_of
 
 
 def cut_in_half(view: View) -> View:

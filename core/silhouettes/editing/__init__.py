@@ -1,0 +1,1 @@
+"""What an analyst does to an outline: every tool takes rings and returns new ones."""
