@@ -31,7 +31,7 @@ def write_report(path: Path, results: Results, pictures: Sequence[Picture]) -> N
         ValueError: the file cannot be written.
     """
     tables = (results.figures_table(), *results.tables)
-    settings = ", ".join(f"{name} {value}" for name, value in results.settings.items())
+    settings = "; ".join(f"{name}: {_text(value)}" for name, value in results.settings.items())
     body = "".join(_table(table) for table in tables) + "".join(map(_figure, pictures))
     title = f"radarhull experiment {results.name}"
     page = (
@@ -41,6 +41,10 @@ def write_report(path: Path, results: Results, pictures: Sequence[Picture]) -> N
     )
     with written_aside(path) as aside:
         aside.write_text(page, encoding="utf-8")
+
+
+def _text(value: object) -> str:
+    return ", ".join(map(str, value)) if isinstance(value, list | tuple) else str(value)
 
 
 def _table(table: Table) -> str:

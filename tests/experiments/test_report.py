@@ -9,7 +9,7 @@ from core.experiments.results import Figure, Results
 def test_a_report_holds_figures_and_pictures_and_no_script(tmp_path):
     results = Results(
         name="check",
-        settings={"seed": 1},
+        settings={"parts": ["one", "two"], "seed": 1},
         figures=(
             Figure(name="<script>alert(1)</script>", value=2.0, unit="mm", wanted="<= 1 mm"),
             Figure(name="width", value=0.5, unit="mm", wanted="<= 1 mm"),
@@ -19,6 +19,7 @@ def test_a_report_holds_figures_and_pictures_and_no_script(tmp_path):
     write_report(tmp_path / "report.html", results, [picture])
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "<script" not in page
+    assert "parts: one, two; seed: 1" in page
     assert 'class="missed"' in page
     assert 'class="met"' in page
     (data,) = re.findall(r"data:image/png;base64,([^\"]+)", page)
