@@ -45,7 +45,7 @@ class ShownOrder(BaseModel):
 
 
 @router.get("/state")
-def readstate_of(stream: Stream) -> dict[str, Any]:
+def read_state(stream: Stream) -> dict[str, Any]:
     """Return what the workstation shows now."""
     return state_of(stream)
 

@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 
 from core.hull.cube_cases import AXIS_BITS, EDGES, Loop, loops
 
-MOST_LOOPS = 4
-
 
 @cache
 def sheet_table() -> NDArray[np.int8]:

@@ -22,10 +22,6 @@ from core.hull.threads import Compiled
 PARALLEL_PX = 1e-9
 """An edge that spans less than this across the lines' direction is crossed nowhere."""
 
-LINE_AXES = (1, 0)
-"""Axes along which lines are swept. z is none of them: it is contiguous, and a running sum along
-another axis adds whole rows along z at once. Two suffice: no view looks along both."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PulledBack:
@@ -53,7 +49,9 @@ class PulledBack:
 def line_axis(projection: Projection) -> int:
     """Return the axis (1 or 0) whose grid lines the view sees, and does not look along.
 
-    A view whose viewing direction is nearest y is swept along x, every other one along y.
+    A view whose viewing direction is nearest y is swept along x, every other one along y. No view
+    looks along both, so z need not be one of them: it is contiguous, and a running sum along
+    another axis adds whole rows along z at once.
     """
     if not projection.is_affine:
         return 0 if int(np.argmax(np.abs(projection.matrix[2, :3]))) == 1 else 1
