@@ -97,7 +97,8 @@ def drawn_frame(view: View, *, time_s: float, random: np.random.Generator) -> Fr
     )
 
 
-def _source(views: int, seed: int) -> Source:
+def satellite_source(views: int, seed: int) -> Source:
+    """Return radar images of the test satellite, drawn from its outlines."""
     random = np.random.default_rng(seed)
     frames = [
         drawn_frame(view, time_s=float(number), random=random)
@@ -116,7 +117,7 @@ def _session(
         extraction=ExtractionSettings(censoring_factor=2.5),
     )
     whole_ms, published_ms, processor_ms = [], [], []
-    with _running(_source(views, seed), settings) as (port, stream):
+    with _running(satellite_source(views, seed), settings) as (port, stream):
         _wait_until_finished(stream)
         with _connected(port) as page, _Viewer(port, stream) as viewer:
             script = _edits(page, views, np.random.default_rng(seed))

@@ -1,13 +1,18 @@
 """A workstation on a free port, in this process."""
 
+import asyncio
 import threading
-from collections.abc import Iterator
+from collections.abc import Coroutine, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from typing import Any, TypeVar
 
 from app.playback import Playback
 from app.server import WorkstationServer, listening_socket, workstation
 from app.source import Source
 from core.reconstruction import ReconstructionSettings
+
+Result = TypeVar("Result")
 
 
 @contextmanager
@@ -31,3 +36,9 @@ def running(
             server.should_exit = True
             thread.join(20)
             assert not thread.is_alive(), "the server did not end"
+
+
+def awaited(coroutine: Coroutine[Any, Any, Result]) -> Result:
+    """Run a coroutine in a thread of its own: Playwright's browser keeps this one's event loop."""
+    with ThreadPoolExecutor(1) as pool:
+        return pool.submit(asyncio.run, coroutine).result()

@@ -1,4 +1,3 @@
-import asyncio
 import json
 
 import pytest
@@ -7,6 +6,7 @@ from starlette.types import Message, Receive, Scope, Send
 from websockets.exceptions import ConnectionClosedError, InvalidStatus
 
 from app.gate import LARGEST_BODY_BYTES, Gate
+from tests.app.running import awaited
 
 SOCKETS = ("/api/live", "/viewport")
 
@@ -25,7 +25,7 @@ def status_of(*headers: tuple[str, str]) -> int:
 
     sent: list[Message] = []
     raw = [(name.encode(), value.encode("latin-1")) for name, value in headers]
-    asyncio.run(Gate(page)({"type": "http", "headers": raw}, receive, send))
+    awaited(Gate(page)({"type": "http", "headers": raw}, receive, send))
     return sent[0]["status"]
 
 

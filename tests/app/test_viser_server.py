@@ -6,6 +6,7 @@ from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed
 
 from app.viser_server import SECRET_HEADER, PrivateViserServer
+from tests.app.running import awaited
 
 
 @pytest.fixture
@@ -25,13 +26,13 @@ async def first_message(server: PrivateViserServer, secret: str | None) -> bytes
 
 
 def test_the_relay_is_answered(server: PrivateViserServer) -> None:
-    assert len(asyncio.run(first_message(server, server.address.secret))) > 0
+    assert len(awaited(first_message(server, server.address.secret))) > 0
 
 
 @pytest.mark.parametrize("secret", [None, "", "guessed"])
 def test_strangers_get_nothing(server: PrivateViserServer, secret: str | None) -> None:
     with pytest.raises(ConnectionClosed) as closed:
-        asyncio.run(first_message(server, secret))
+        awaited(first_message(server, secret))
     assert closed.value.rcvd.code == 1008
 
 
