@@ -1,4 +1,4 @@
-"""Gets a Chromium where there is none, then runs the whole suite: `python -m tests`."""
+"""Gets a Chromium where there is none, then runs the suite on all processors: `python -m tests`."""
 
 import sys
 
@@ -8,4 +8,5 @@ from tests.chromium import ensure_chromium
 
 if __name__ == "__main__":
     ensure_chromium()
-    raise SystemExit(pytest.main(sys.argv[1:]))
+    # A file's tests share what they compute once, so they stay together.
+    raise SystemExit(pytest.main(["-n", "auto", "--dist", "loadfile", *sys.argv[1:]]))
