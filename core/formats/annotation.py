@@ -46,6 +46,7 @@ class Annotation:
         image_shape: (rows, columns) that the file states.
         claim: what the outline claims to show, None where the file does not say.
         component: what it outlines, None where the file does not say it of all parts alike.
+        is_mask: whether the rings run around whole pixels, for the file knows no others.
     """
 
     number: int
@@ -53,6 +54,7 @@ class Annotation:
     image_shape: tuple[int, int]
     claim: Claim | None = None
     component: str | None = None
+    is_mask: bool = False
 
 
 def image_name(number: int, suffix: str = ".png") -> str:

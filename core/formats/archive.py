@@ -2,6 +2,7 @@
 
 import io
 import zipfile
+import zlib
 from collections.abc import Iterable, Iterator
 
 MOST_MEMBERS = 20_000
@@ -43,7 +44,7 @@ def unpacked(content: bytes) -> Iterator[tuple[str, bytes]]:
                 yield member.filename, unpacked_bytes
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, OSError) as error:
         raise ValueError(f"The archive cannot be read: {error}.") from error
-    except zipfile.zlib.error as error:
+    except zlib.error as error:
         raise ValueError(f"The archive is damaged: {error}.") from error
 
 

@@ -134,8 +134,9 @@ def _rings(annotation: Any, shape: tuple[int, int], where: str) -> tuple[Floats,
     segmentation = annotation.get("segmentation")
     if isinstance(segmentation, list):
         polygons = [np.asarray(_even(each, where)).reshape(-1, 2) for each in segmentation]
-        rings = [from_xy(each, f"A polygon of {where}") for each in polygons]
-        return combined([(turned(ring, clockwise=True),) for ring in rings])
+        return combined(
+            [(turned(from_xy(each, f"A polygon of {where}"), clockwise=True),) for each in polygons]
+        )
     mask = _unpacked(segmentation, shape, where)
     own = annotation.get(OWN_FIELD)
     if isinstance(own, dict) and isinstance(own.get("rings"), list):
@@ -162,16 +163,20 @@ def _runs(mask: NDArray[np.bool_]) -> dict[str, Any]:
     return {"counts": counts.tolist(), "size": list(mask.shape)}
 
 
+def _fill(counts: list[Any], size: int) -> bool:
+    """Whether run lengths are whole numbers that add up to so many pixels."""
+    are_lengths = all(isinstance(count, int) and 0 <= count <= size for count in counts)
+    return are_lengths and sum(counts) == size
+
+
 def _unpacked(runs: Any, shape: tuple[int, int], where: str) -> NDArray[np.bool_]:
     counts = runs.get("counts") if isinstance(runs, dict) else None
     if isinstance(counts, str):
         raise ValueError(
             f"The mask of {where} is compressed; write polygons or uncompressed run lengths."
         )
-    is_right = isinstance(counts, list) and all(
-        isinstance(count, int) and 0 <= count <= shape[0] * shape[1] for count in counts
-    )
-    if not is_right or runs.get("size") != list(shape) or sum(counts) != shape[0] * shape[1]:
+    size = shape[0] * shape[1]
+    if not isinstance(counts, list) or runs.get("size") != list(shape) or not _fill(counts, size):
         raise ValueError(
             f"The annotation of {where} must be polygons, or run lengths that fill its "
             f"{shape[0]} × {shape[1]} pixels."

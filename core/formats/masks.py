@@ -53,8 +53,9 @@ def read_mask(content: bytes, name: str) -> Annotation:
         raise ValueError(f"{where} is damaged; write it again.")
     return Annotation(
         number=frame_number(name),
-        rings=mask_rings(pixels > 0),
+        rings=mask_rings(pixels.astype(bool)),
         image_shape=shape,
+        is_mask=True,
     )
 
 
