@@ -91,7 +91,7 @@ def from_xy(points: Any, where: str) -> Floats:
     """
     try:
         pairs = np.asarray(points, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         pairs = np.empty(0)
     if pairs.ndim != 2 or pairs.shape[1:] != (2,) or len(pairs) < 3 or not np.isfinite(pairs).all():
         raise ValueError(f"{where} must be a list of at least three points (x, y).")

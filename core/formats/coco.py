@@ -120,13 +120,13 @@ def _read_image(image: Any, annotations: list[Any], names: dict[int, str]) -> An
     shape = stated_shape(image, "height", "width", where)
     parts = [_rings(each, shape, where) for each in annotations]
     claims = {stated_claim(each.get(OWN_FIELD)) for each in annotations}
-    labels = (names.get(each.get("category_id"), "") for each in annotations)
+    kinds = (member(each, "category_id", int, f"An annotation of {where}") for each in annotations)
     return Annotation(
         number=frame_number(name),
         rings=combined(parts),
         image_shape=shape,
         claim=claims.pop() if len(claims) == 1 else None,
-        component=common(labels) or None,
+        component=common(names.get(kind, "") for kind in kinds) or None,
     )
 
 

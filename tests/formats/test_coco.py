@@ -90,7 +90,9 @@ def test_images_without_annotations_are_left_alone_unless_they_show_no_target() 
         ({"segmentation": {"counts": "abc", "size": list(SHAPE)}}, "compressed"),
         ({"segmentation": {"counts": [-1, 2401], "size": list(SHAPE)}}, "run lengths that fill"),
         ({"segmentation": None}, "polygons, or run lengths"),
+        ({"segmentation": [[10**400, 0, 1, 0, 1, 1]]}, "three points"),
         ({"image_id": "1"}, "whole number"),
+        ({"category_id": [1]}, "whole number"),
     ],
 )
 def test_what_is_no_outline_is_refused(change, sentence) -> None:

@@ -1,0 +1,179 @@
+// Loading another source, and outlines from files: chosen, dropped anywhere, and given up.
+
+import { confirmed } from "./confirm.js";
+import { frames } from "./numbers.js";
+import { send, upload } from "./server.js";
+
+const part = (id) => document.getElementById(id);
+
+const LARGEST_BYTES = { pass: 2 * 2 ** 30, outlines: 64 * 2 ** 20 };
+/** As the server has it, which would hang up in the middle of a larger file. */
+
+export class Loading {
+  #hooks;
+  #running = null;
+  #ownKey = "";
+  #depth = 0;
+
+  /** `hooks.complain(sentence, kind)`; `hooks.state()`; `hooks.isBusy()` while somebody draws. */
+  constructor(hooks) {
+    this.#hooks = hooks;
+    const open = {
+      pass: () => this.choosePass(),
+      demo: () => this.#loadDemo(),
+      outlines: () => part("outlines-file").click(),
+    };
+    for (const button of document.querySelectorAll("[data-open]")) {
+      button.addEventListener("click", () => {
+        part("open-menu").hidePopover();
+        open[button.dataset.open]();
+      });
+    }
+    for (const id of ["pass-file", "outlines-file"]) {
+      part(id).addEventListener("change", () => {
+        const [file] = part(id).files;
+        part(id).value = "";
+        if (file) this.#take(file, id === "pass-file" ? "pass" : "outlines");
+      });
+    }
+    part("loading-cancel").addEventListener("click", () => this.#running?.cancel());
+    this.#takeDrops(window);
+  }
+
+  choosePass() {
+    part("pass-file").click();
+  }
+
+  update({ frames: received }) {
+    part("open-outlines").disabled = received === 0;
+  }
+
+  /** Whether a state shows the source that this page itself has loaded. */
+  isOwn({ source }) {
+    return this.#running !== null || source.key === this.#ownKey;
+  }
+
+  /** Take files that are dropped on a frame's page, which keeps them from ours. */
+  takeDropsOn(frame) {
+    const listen = () => frame.contentWindow && this.#takeDrops(frame.contentWindow);
+    listen();
+    frame.addEventListener("load", listen);
+  }
+
+  #takeDrops(target) {
+    const isFile = (event) => event.dataTransfer?.types.includes("Files");
+    const zone = part("drop-zone");
+    const on = (name, act) => target.addEventListener(name, (event) => {
+      if (!isFile(event)) return;
+      event.preventDefault();
+      act(event);
+    });
+    on("dragenter", () => {
+      this.#depth += 1;
+      zone.hidden = false;
+    });
+    on("dragover", () => {
+      zone.hidden = false;
+    });
+    on("dragleave", (event) => {
+      this.#depth -= 1;
+      // Over the zone itself, which covers everything, nothing else is entered or left.
+      if (this.#depth <= 0 || event.relatedTarget === null) this.#endDrag();
+    });
+    on("drop", (event) => {
+      this.#endDrag();
+      this.#drop([...event.dataTransfer.files]);
+    });
+  }
+
+  #endDrag() {
+    this.#depth = 0;
+    part("drop-zone").hidden = true;
+  }
+
+  #drop(files) {
+    if (files.length !== 1) {
+      this.#hooks.complain(`One file is taken at a time; ${files.length} were dropped.`);
+      return;
+    }
+    this.#take(files[0], /\.(json|png|zip)$/i.test(files[0].name) ? "outlines" : "pass");
+  }
+
+  async #take(file, kind) {
+    const most = LARGEST_BYTES[kind];
+    if (file.size > most) {
+      this.#hooks.complain(`${file.name} has ${sizeText(file.size)}; at most ${sizeText(most)} are taken.`);
+      return;
+    }
+    if (kind === "pass" && !(await this.#mayDiscard())) return;
+    const query = new URLSearchParams({ name: file.name });
+    const path = kind === "pass" ? "/api/source" : "/api/silhouettes";
+    const answer = await this.#run(file.name, (tell) => upload(`${path}?${query}`, file, tell));
+    if (answer && kind === "pass") this.#ownKey = answer.source.key;
+    else if (answer) this.#hooks.complain(importedText(file.name, answer), "note");
+  }
+
+  async #loadDemo() {
+    if (!(await this.#mayDiscard())) return;
+    const answer = await this.#run("the demo", () => ({
+      done: send("POST", "/api/source", { demo: true }),
+      cancel: () => {},
+    }));
+    if (answer) this.#ownKey = answer.source.key;
+  }
+
+  /** Do `start(tell)` with its progress on show; gives its answer, nothing if it came to none. */
+  async #run(name, start) {
+    if (this.#running || this.#hooks.isBusy()) {
+      this.#hooks.complain("Something is being saved or loaded still; try again when it is done.");
+      return undefined;
+    }
+    this.#hooks.complain("");
+    this.#tell(name, 0, 0);
+    part("loading").hidden = false;
+    try {
+      this.#running = start((sent, total) => this.#tell(name, sent, total));
+      return await this.#running.done;
+    } catch (error) {
+      if (error.name !== "AbortError") this.#hooks.complain(error.message);
+      return undefined;
+    } finally {
+      this.#running = null;
+      part("loading").hidden = true;
+    }
+  }
+
+  #tell(name, sent, total) {
+    const bar = part("loading-bar");
+    const isSent = sent >= total;
+    part("loading-text").textContent = isSent
+      ? `Reading ${name}…`
+      : `Uploading ${name}: ${sizeText(sent)} of ${sizeText(total)}`;
+    part("loading-cancel").hidden = isSent;
+    if (isSent) bar.removeAttribute("value");
+    else bar.value = sent / total;
+  }
+
+  async #mayDiscard() {
+    const infos = this.#hooks.state()?.frames_info ?? [];
+    const edited = infos.filter((info) => info.edited).length;
+    if (edited === 0) return true;
+    const outlines = edited === 1 ? "1 edited outline" : `${edited} edited outlines`;
+    return confirmed({
+      title: "Load another pass?",
+      text: `Loading another pass discards ${outlines}. Export them first.`,
+      action: edited === 1 ? "Discard it and load" : "Discard them and load",
+    });
+  }
+}
+
+function importedText(name, { changed, unchanged }) {
+  const same = unchanged.length === 0 ? "" : ` ${frames(unchanged.length)} had it already.`;
+  if (changed.length === 0) return `Every outline in ${name} is on its frame already.`;
+  return `${frames(changed.length)} took over an outline from ${name}; each can be undone.${same}`;
+}
+
+function sizeText(bytes) {
+  if (bytes < 1e6) return `${Math.ceil(bytes / 1e3)} kB`;
+  return bytes < 1e9 ? `${(bytes / 1e6).toFixed(1)} MB` : `${(bytes / 1e9).toFixed(2)} GB`;
+}
