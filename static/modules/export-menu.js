@@ -1,12 +1,12 @@
 // The menu of files to be had: links that the browser downloads, as far as there is something.
 
 export class ExportMenu {
-  #menu;
   #note;
   #links;
+  #state = { hull: null, frames: 0 };
+  #isLost = false;
 
   constructor(menu, note) {
-    this.#menu = menu;
     this.#note = note;
     this.#links = [...menu.querySelectorAll("a[data-needs]")];
     for (const link of this.#links) link.dataset.href = link.getAttribute("href");
@@ -15,8 +15,14 @@ export class ExportMenu {
     });
   }
 
-  update({ hull, frames }) {
-    const missing = whatIsMissing(hull, frames);
+  setLost(isLost) {
+    this.#isLost = isLost;
+    this.update(this.#state);
+  }
+
+  update(state) {
+    this.#state = state;
+    const missing = whatIsMissing(state, this.#isLost);
     for (const link of this.#links) {
       const isMissing = Boolean(missing[link.dataset.needs]);
       if (isMissing) link.removeAttribute("href");
@@ -30,9 +36,9 @@ export class ExportMenu {
 }
 
 /** Why each kind of file cannot be had now; empty where it can. */
-function whatIsMissing(hull, frames) {
-  if (frames === 0 || hull === null) {
-    const none = "There is nothing to export before the first frame.";
+function whatIsMissing({ hull, frames }, isLost) {
+  if (isLost || frames === 0 || hull === null) {
+    const none = isLost ? "The server does not answer." : "There is nothing to export before the first frame.";
     return { frames: none, facts: none, hull: none };
   }
   const preview = hull.is_preview ? "The hull follows an outline that is not kept yet." : "";

@@ -15,7 +15,10 @@ export class Loading {
   #ownKey = "";
   #depth = 0;
 
-  /** `hooks.complain(sentence, kind)`; `hooks.state()`; `hooks.isBusy()` while somebody draws. */
+  /**
+   * `hooks.complain(sentence, kind)`; `hooks.state()`; `hooks.isBusy()` while somebody draws;
+   * `hooks.hasConflict()` where an outline waits to be kept or given up.
+   */
   constructor(hooks) {
     this.#hooks = hooks;
     const open = {
@@ -117,7 +120,6 @@ export class Loading {
     if (!(await this.#mayDiscard())) return;
     const answer = await this.#run("the demo", () => ({
       done: send("POST", "/api/source", { demo: true }),
-      cancel: () => {},
     }));
     if (answer) this.#ownKey = answer.source.key;
   }
@@ -129,10 +131,14 @@ export class Loading {
       return undefined;
     }
     this.#hooks.complain("");
-    this.#tell(name, 0, 0);
+    this.#tell(`Loading ${name}…`);
     part("loading").hidden = false;
     try {
-      this.#running = start((sent, total) => this.#tell(name, sent, total));
+      this.#running = start((sent, total) => {
+        if (sent >= total) this.#tell(`Reading ${name}…`);
+        else this.#tell(`Uploading ${name}: ${sizeText(sent)} of ${sizeText(total)}`, sent / total);
+      });
+      part("loading-cancel").hidden = !this.#running.cancel;
       return await this.#running.done;
     } catch (error) {
       if (error.name !== "AbortError") this.#hooks.complain(error.message);
@@ -143,20 +149,19 @@ export class Loading {
     }
   }
 
-  #tell(name, sent, total) {
+  /** Once all is sent the server reads it, which nobody can call off. */
+  #tell(text, share) {
     const bar = part("loading-bar");
-    const isSent = sent >= total;
-    part("loading-text").textContent = isSent
-      ? `Reading ${name}…`
-      : `Uploading ${name}: ${sizeText(sent)} of ${sizeText(total)}`;
-    part("loading-cancel").hidden = isSent;
-    if (isSent) bar.removeAttribute("value");
-    else bar.value = sent / total;
+    part("loading-text").textContent = text;
+    part("loading-cancel").hidden = share === undefined;
+    if (share === undefined) bar.removeAttribute("value");
+    else bar.value = share;
   }
 
   async #mayDiscard() {
     const infos = this.#hooks.state()?.frames_info ?? [];
-    const edited = infos.filter((info) => info.edited).length;
+    const unsaved = this.#hooks.hasConflict() ? 1 : 0;
+    const edited = infos.filter((info) => info.edited).length + unsaved;
     if (edited === 0) return true;
     const outlines = edited === 1 ? "1 edited outline" : `${edited} edited outlines`;
     return confirmed({

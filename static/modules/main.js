@@ -109,6 +109,7 @@ const transport = new Transport(
 const loading = new Loading({
   complain,
   isBusy: () => session.isBusy || session.isSaving,
+  hasConflict: () => session.conflict !== null,
   state: () => state,
 });
 const exporting = new ExportMenu(part("export-menu"), part("export-note"));
@@ -150,8 +151,9 @@ function showState(next) {
   // The answer to an order may arrive after the news of what followed it.
   if (next.serial < newestSerial) return;
   newestSerial = next.serial;
-  if (state && state.source.key !== next.source.key) forgetSource(next);
+  const before = state;
   state = next;
+  if (before && before.source.key !== state.source.key) forgetSource(before);
   showSource(state);
   showHull(state);
   showBanner();
@@ -165,11 +167,11 @@ function showState(next) {
 }
 
 /** Another source was loaded, here or elsewhere, or the server was started anew. */
-function forgetSource(next) {
-  const edited = (state.frames_info ?? []).filter((info) => info.edited).length;
-  const what = session.conflict || edited > 0;
-  const why = isAnew ? "The server was started anew" : `${next.source.name} was loaded`;
-  complain(what && !loading.isOwn(next) ? `${why}: the edits of ${state.source.name} are gone.` : "");
+function forgetSource(before) {
+  const hadEdits = session.conflict || (before.frames_info ?? []).some((info) => info.edited);
+  const why = isAnew ? "The server was started anew" : `${state.source.name} was loaded`;
+  const isTold = hadEdits && !loading.isOwn(state);
+  complain(isTold ? `${why}: the edits of ${before.source.name} are gone.` : "");
   isAnew = false;
   frameOnShow = "";
   session.clear();
@@ -254,10 +256,15 @@ function dismiss() {
   showBanner();
 }
 
+/** What a program says, as a person writes it. */
+function sentence(text) {
+  return `${text.charAt(0).toUpperCase()}${text.slice(1).replace(/[.!?]*$/, "")}.`;
+}
+
 function showFailure() {
   const { message, frames } = state;
   const kept = frames === 0 ? "" : ` The ${frames === 1 ? "frame" : `${frames} frames`} before that can still be edited and measured.`;
-  banner.show(`${message.replace(/[.!?]*$/, "")}.${kept}`, [
+  banner.show(`${sentence(message)}${kept}`, [
     ["Try again", () => command("POST", "/api/playback", { action: "restart" })],
     ["Open another pass…", () => loading.choosePass()],
     ["Dismiss", dismiss],
@@ -276,6 +283,7 @@ function showLink(link) {
     part("viewport").contentWindow.location.reload();
   }
   linkWasLost = link === "lost";
+  exporting.setLost(linkWasLost);
   showBanner();
   showSaved(session, linkWasLost);
 }

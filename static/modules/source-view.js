@@ -1,6 +1,6 @@
 // The source of the frames, and how far its imaging is.
 
-import { frames } from "./numbers.js";
+import { frames, views } from "./numbers.js";
 
 const part = (id) => document.getElementById(id);
 
@@ -32,9 +32,10 @@ function showWelcome(isEmpty) {
 /** What a person should know of how many views there are, empty if nothing. */
 export function fewViewsText({ status, hull, frames: received }) {
   if (status !== "finished" || hull === null || hull.views === 0 || hull.views > 2) return "";
-  const count = hull.views === 1 ? "One view bounds" : "Two views bound";
-  const all = received === 1 ? "This pass holds one frame." : `This pass holds ${frames(received)}.`;
-  return `${all} ${count} the target only across ${hull.views === 1 ? "its line" : "their lines"} of sight; a hull needs more. What no view bounds is called so, and has no number.`;
+  const pass = received === 1 ? "This pass holds 1 frame" : `This pass gives ${views(hull.views)}`;
+  const open = hull.extents.filter((extent) => !extent.is_bounded).map((extent) => extent.name);
+  const unbounded = open.length === 0 ? "" : ` Not bounded so far: ${open.join(", ")}.`;
+  return `${pass}; a hull takes its form from views in many directions.${unbounded}`;
 }
 
 function statusText({ status, source, frames: received }) {
