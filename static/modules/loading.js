@@ -6,8 +6,8 @@ import { send, upload } from "./server.js";
 
 const part = (id) => document.getElementById(id);
 
+/** As the server has them; it would hang up in the middle of a larger file. */
 const LARGEST_BYTES = { pass: 2 * 2 ** 30, outlines: 64 * 2 ** 20 };
-/** As the server has it, which would hang up in the middle of a larger file. */
 
 export class Loading {
   #hooks;
@@ -67,7 +67,8 @@ export class Loading {
     const isFile = (event) => event.dataTransfer?.types.includes("Files");
     const zone = part("drop-zone");
     const on = (name, act) => target.addEventListener(name, (event) => {
-      if (!isFile(event)) return;
+      // A page that was loaded twice into the same window listens twice.
+      if (!isFile(event) || event.defaultPrevented) return;
       event.preventDefault();
       act(event);
     });

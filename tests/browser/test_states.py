@@ -80,7 +80,7 @@ def test_from_nothing_to_the_demo_to_a_file_and_no_edit_lost_unasked(
     page.get_by_role("button", name="Load the demo").click()
     finished(page, 2)
     expect(page.locator("#welcome")).to_be_hidden()
-    expect(page.locator("#saved")).to_have_text(re.compile(r"^Savedrev \d+$"))
+    expect(page.locator("#saved")).to_have_text(re.compile(r"^Saved · rev \d+$"))
     expect(page.locator("#banner")).to_contain_text(
         "This pass gives 2 views; a hull takes its form"
     )
@@ -139,7 +139,7 @@ def test_what_came_before_a_failure_stays_usable(visit) -> None:
     assert state(page)["frames_info"][1]["edited"]
     run = state(page)["run"]
     banner.get_by_role("button", name="Try again").click()
-    page.wait_for_function(f"Number(document.querySelector('#hull-body').dataset.run) > {run}")
+    expect(page.locator("#hull-body")).to_have_attribute("data-run", str(run + 1))
     expect(banner).to_contain_text("The tape is torn")
     banner.get_by_role("button", name="Dismiss").click()
     expect(banner).to_be_hidden()
