@@ -24,6 +24,7 @@ def state_facts(snapshot: Snapshot, source: Source) -> dict[str, Any]:
             "name": source.name,
             "description": source.description,
             "expected_frames": source.expected_frames,
+            "key": source.key,
         },
         "run": snapshot.run,
         "serial": snapshot.serial,

@@ -12,6 +12,9 @@ LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
 LARGEST_BODY_BYTES = 1024 * 1024
 """An outline of 20,000 vertices, written with all their digits."""
 
+LARGEST_UPLOADS_BYTES = {"/api/source": 2 * 2**30, "/api/silhouettes": 64 * 2**20}
+"""What these paths may be sent instead: files, which they take in piece by piece."""
+
 PAGE_POLICY = "; ".join(
     [
         "default-src 'none'",
@@ -55,16 +58,17 @@ class Gate:
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
-        status, sentence = _refusal(Headers(scope=scope), self._host_names)
+        most_bytes = LARGEST_UPLOADS_BYTES.get(scope.get("path", ""), LARGEST_BODY_BYTES)
+        status, sentence = _refusal(Headers(scope=scope), self._host_names, most_bytes)
         if sentence:
             await _refuse(scope, receive, send, status, sentence)
         elif scope["type"] == "websocket":
             await self._app(scope, receive, send)
         else:
-            await self._app(scope, _limited(receive), _with_headers(send))
+            await self._app(scope, _limited(receive, most_bytes), _with_headers(send))
 
 
-def _refusal(headers: Headers, host_names: frozenset[str]) -> tuple[int, str]:
+def _refusal(headers: Headers, host_names: frozenset[str], most_bytes: int) -> tuple[int, str]:
     # A second Host or Origin shows in the joined text, which then is neither name nor origin.
     host = ", ".join(headers.getlist("host"))
     if _host_name(host) not in host_names:
@@ -78,9 +82,9 @@ def _refusal(headers: Headers, host_names: frozenset[str]) -> tuple[int, str]:
             f"Requests from {_short(origin)} are refused; only this server's own page may ask."
         )
     length = headers.get("content-length", "0")
-    if not _is_allowed(length):
+    if not _is_allowed(length, most_bytes):
         return 413, (
-            f"The request's body may hold at most {LARGEST_BODY_BYTES} bytes; got {_short(length)}."
+            f"The request's body may hold at most {most_bytes} bytes; got {_short(length)}."
         )
     return 200, ""
 
@@ -95,17 +99,17 @@ def _is_own(origin: str, host: str) -> bool:
     return origin.lower() in (f"http://{host}".lower(), f"https://{host}".lower())
 
 
-def _is_allowed(length: str) -> bool:
+def _is_allowed(length: str, most_bytes: int) -> bool:
     digits = length.lstrip("0")
     is_number = length.isascii() and length.isdecimal()
-    return is_number and len(digits) < 10 and int(digits or "0") <= LARGEST_BODY_BYTES
+    return is_number and len(digits) < 20 and int(digits or "0") <= most_bytes
 
 
 def _short(text: str) -> str:
     return text if len(text) <= 80 else f"{text[:80]}…"
 
 
-def _limited(receive: Receive) -> Receive:
+def _limited(receive: Receive, most_bytes: int = LARGEST_BODY_BYTES) -> Receive:
     """Return `receive` that ends a body which came without a length and grows too large."""
     received = 0
 
@@ -113,7 +117,7 @@ def _limited(receive: Receive) -> Receive:
         nonlocal received
         message = await receive()
         received += len(message.get("body", b""))
-        return {"type": "http.disconnect"} if received > LARGEST_BODY_BYTES else message
+        return {"type": "http.disconnect"} if received > most_bytes else message
 
     return limited
 

@@ -11,7 +11,7 @@ from core.hull.surface import Surface
 from core.reconstruction import ReconstructionSettings
 from core.silhouettes.silhouette import Silhouette
 
-Status = Literal["preparing", "playing", "paused", "finished", "failed"]
+Status = Literal["empty", "preparing", "playing", "paused", "finished", "failed"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

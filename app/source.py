@@ -1,7 +1,8 @@
 """Where the frames of a live reconstruction come from."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from uuid import uuid4
 
 from core.frame import Frame
 
@@ -15,9 +16,15 @@ class Source:
         description: one sentence on what the frames show.
         frames: starts a fresh sequence of frames; it may take its time over each.
         expected_frames: how many will come, None where that is unknown.
+        key: another for every source, so that a page knows when another was loaded.
     """
 
     name: str
     frames: Callable[[], Iterable[Frame]]
     description: str = ""
     expected_frames: int | None = None
+    key: str = field(default_factory=lambda: uuid4().hex)
+
+
+NO_SOURCE = Source(name="No pass loaded", frames=tuple)
+"""What a workstation plays that waits for somebody to load a pass."""

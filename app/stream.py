@@ -10,7 +10,7 @@ from dataclasses import replace
 from app.observers import Observer, Observers
 from app.playback import Playback
 from app.snapshot import Record, Snapshot, Status
-from app.source import Source
+from app.source import NO_SOURCE, Source
 from app.tape import Take, Tape
 from core.analysis.analysis import Analysis
 from core.hull.closed_mesh import Surface
@@ -58,6 +58,7 @@ class LiveStream:
         """
         self.source = source
         self._playback = playback or Playback()
+        self._surface_of = surface_of
         self._analysis = Analysis(settings, surface_of=surface_of)
         self._records: tuple[Record, ...] = ()
         self._tape = self._new_tape()
@@ -72,7 +73,7 @@ class LiveStream:
         self._thread = threading.Thread(target=self._work, name="live-stream", daemon=True)
         self._snapshot = Snapshot(
             run=1,
-            status="preparing" if self._playback.is_playing else "paused",
+            status=self._first_status(),
             speed_hz=self._playback.speed_hz,
             settings=self._analysis.settings,
         )
@@ -126,22 +127,47 @@ class LiveStream:
         """
         with self._working:
             self._analysis.rewind()
-            self._records = ()
-            with self._changed:
-                self._playback.restart()
-                if self._snapshot.status == "failed":
-                    self._tape = self._new_tape()
-                self._publish(
-                    Snapshot(
-                        run=self._snapshot.run + 1,
-                        status="preparing",
-                        speed_hz=self._playback.speed_hz,
-                        settings=self._analysis.settings,
-                        latency_ms=self._snapshot.latency_ms,
-                    )
-                )
-                self._changed.notify_all()
+            if self._snapshot.status == "failed":
+                self._tape = self._new_tape()
+            self._begin_run()
         self._observers.call()
+
+    def load(self, source: Source) -> None:
+        """Play another source from its first frame, carved as this one.
+
+        The frames of this one, their edits and their states are gone.
+        """
+        with self._working:
+            self.source = source
+            self._analysis = Analysis(
+                self._analysis.settings,
+                surface_of=self._surface_of,
+                revision=self._analysis.revision + 1,
+            )
+            self._tape = self._new_tape()
+            self._begin_run()
+        self._observers.call()
+
+    def _begin_run(self) -> None:
+        """Show no frame yet; whoever calls holds the analysis's lock."""
+        self._records = ()
+        with self._changed:
+            self._playback.restart()
+            self._publish(
+                Snapshot(
+                    run=self._snapshot.run + 1,
+                    status=self._first_status(),
+                    speed_hz=self._playback.speed_hz,
+                    settings=self._analysis.settings,
+                    latency_ms=self._snapshot.latency_ms,
+                )
+            )
+            self._changed.notify_all()
+
+    def _first_status(self) -> Status:
+        if self.source is NO_SOURCE:
+            return "empty"
+        return "preparing" if self._playback.is_playing else "paused"
 
     def edit(self, operation: Callable[[Analysis], object]) -> Snapshot:
         """Let `operation` change the analysis, and return the snapshot with the hull after it.
@@ -211,7 +237,7 @@ class LiveStream:
             self._publish(replace(after, status=self._status_when_running(after)))
 
     def _status_when_running(self, snapshot: Snapshot) -> Status:
-        if snapshot.status in ("finished", "failed"):
+        if snapshot.status in ("empty", "finished", "failed"):
             return snapshot.status
         if not self._playback.is_playing:
             return "paused"
@@ -242,6 +268,8 @@ class LiveStream:
             self._wait_for_restart(run)
 
     def _play_through(self, run: int) -> None:
+        if self.source is NO_SOURCE:
+            return
         for take in self._tape.takes():
             if not (self._is_released(run) and self._take_in(run, take)):
                 return

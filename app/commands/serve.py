@@ -8,6 +8,7 @@ import tyro
 from app.commands.options import Carving, CarvingOptions
 from app.server import DEFAULT_PORT
 from app.server import serve as serve_source
+from app.source import NO_SOURCE, Source
 from app.sources import demo_source, pass_sources
 
 WORKSTATION_CARVING = Carving(spacing_m=0.2)
@@ -23,6 +24,7 @@ def serve(
     /,
     *,
     port: int = DEFAULT_PORT,
+    empty: bool = False,
     open: bool = False,  # noqa: A002 - the flag's name on the command line
     carving: CarvingOptions = WORKSTATION_CARVING,
 ) -> None:
@@ -31,6 +33,7 @@ def serve(
     Args:
         pass_file: a pass file to play; without one, the built-in demo of three simulated passes.
         port: port on 127.0.0.1; 0 takes any free one.
+        empty: begin without a source; the page loads the demo or a pass file that is dropped on it.
         open: also open the page in the browser.
         carving: how the hull is carved.
     """
@@ -40,5 +43,11 @@ def serve(
             "Registration by agreement waits for all frames, and the workstation shows each as it "
             "comes; use radarhull reconstruct --register agreement, or --register centroid here."
         )
-    source = demo_source() if pass_file is None else pass_sources([pass_file])[0]
+    if empty and pass_file is not None:
+        raise ValueError(f"--empty begins without a source, and {pass_file} is one; leave one out.")
+    source = NO_SOURCE if empty else _source(pass_file)
     serve_source(source, port=port, open_browser=open, settings=settings)
+
+
+def _source(pass_file: Path | None) -> Source:
+    return demo_source() if pass_file is None else pass_sources([pass_file])[0]

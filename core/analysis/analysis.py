@@ -1,6 +1,6 @@
 """The mutable heart of the workstation: frames that arrive, outlines that change, one hull."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import get_args
 
@@ -33,12 +33,15 @@ class Analysis:
         settings: ReconstructionSettings | None = None,
         *,
         surface_of: Callable[[VoteVolume], Surface] = VoteVolume.surface,
+        revision: int = 0,
     ) -> None:
         """Start without frames.
 
         Args:
             settings: what an analyst may choose.
             surface_of: meshes the hull at the volume's threshold; by default exactly.
+            revision: from which hulls and outlines count theirs; one beyond an earlier analysis's
+                lets an edit that was meant for that one be known as stale.
 
         Raises:
             ValueError: a grid too large.
@@ -51,8 +54,14 @@ class Analysis:
         self._journal: list[Edit] = []
         self._coarse: VoteVolume | None = None
         self._is_preview = False
-        self._revision = 0
+        self._revision = revision
+        self._first_revision = revision
         self._shown: tuple[Hull, Surface] | None = None
+
+    @property
+    def revision(self) -> int:
+        """Of the hull; it grows with every change, and no outline's is larger."""
+        return self._revision
 
     @property
     def settings(self) -> ReconstructionSettings:
@@ -115,7 +124,8 @@ class Analysis:
             history, state = before.history, before.state
         else:
             extracted = silhouette or extract_silhouette(frame, self._settings.extraction)
-            history = History(outlines=(Outlined(silhouette=extracted, tool=EXTRACTION),))
+            first = Outlined(silhouette=extracted, tool=EXTRACTION)
+            history = History(outlines=(first,), revision=self._first_revision)
             state = "todo"
         received = AnalysedFrame(
             number=number,
@@ -160,6 +170,17 @@ class Analysis:
         history = self._based(number, base_revision)
         outlined = Outlined(silhouette=silhouette, tool=tool, repair=repair)
         return self._revise(number, history.committed(outlined), tool)
+
+    def commit_all(self, outlines: Mapping[int, Outlined]) -> None:
+        """Give several frames, by number, other outlines than their present ones: all or none.
+
+        Raises:
+            ValueError: there is no such frame, or an outline that cannot vote.
+        """
+        for number, outlined in outlines.items():
+            self._with_outline(self.frame(number), outlined.silhouette)
+        for number, outlined in outlines.items():
+            self._revise(number, self.frame(number).history.committed(outlined), outlined.tool)
 
     def undo(self, number: int, *, base_revision: int) -> AnalysedFrame:
         """Take a frame's last edit back; no other frame changes.

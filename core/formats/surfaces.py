@@ -21,7 +21,12 @@ def write_surface(path: Path, surface: Surface) -> None:
     checked_output(path, SUFFIXES)
     if surface.is_empty:
         raise ValueError("The hull is empty; there is no surface to write.")
-    mesh = trimesh.Trimesh(surface.vertices_m, surface.faces, process=False)
-    content = mesh.export(file_type=path.suffix.lower()[1:])
+    content = surface_bytes(surface, path.suffix.lower())
     with written_aside(path) as aside:
         aside.write_bytes(content)
+
+
+def surface_bytes(surface: Surface, suffix: str) -> bytes:
+    """Return a surface that is not empty as the file that ends in one of SUFFIXES, in metres."""
+    mesh = trimesh.Trimesh(surface.vertices_m, surface.faces, process=False)
+    return bytes(mesh.export(file_type=suffix[1:]))

@@ -15,10 +15,11 @@ export class Banner {
   }
 
   /** Show a sentence and buttons [label, action]; an empty sentence hides the line. */
-  show(sentence, choices = []) {
-    const wanted = JSON.stringify([sentence, choices.map(([label]) => label)]);
+  show(sentence, choices = [], kind = "bad") {
+    const wanted = JSON.stringify([sentence, kind, choices.map(([label]) => label)]);
     if (wanted === this.#shown) return;
     this.#shown = wanted;
+    this.#place.dataset.kind = kind;
     this.#text.textContent = sentence;
     this.#choices.replaceChildren(
       ...choices.map(([label, action]) => {

@@ -1,17 +1,20 @@
 // The page: one state from the server, shown in every part.
 
 import { Banner } from "./banner.js";
+import { ExportMenu } from "./export-menu.js";
 import { Carving } from "./carving.js";
 import { Editor } from "./editor.js";
 import { FramePanel } from "./frame-panel.js";
 import { showHull } from "./hull-view.js";
 import { resizablePanes } from "./panes.js";
+import { Loading } from "./loading.js";
 import { Proposals } from "./proposals.js";
+import { showSaved } from "./saved-view.js";
 import { Review } from "./review.js";
 import { getJson, keepLinked, send } from "./server.js";
 import { bindShortcuts, fillSheet } from "./shortcuts.js";
 import { listenInSpace } from "./space-keys.js";
-import { showSource } from "./source-view.js";
+import { fewViewsText, showSource } from "./source-view.js";
 import { Tabs } from "./tabs.js";
 import { Toolbar } from "./toolbar.js";
 import { Transport } from "./transport.js";
@@ -24,6 +27,9 @@ let frameOnShow = "";
 let isFetching = false;
 let linkWasLost = false;
 let complaint = "";
+let complaintKind = "bad";
+let isAnew = false;
+let dismissed = "";
 
 const tabs = new Tabs(document.querySelectorAll("[role=tab]"));
 const banner = new Banner(part("banner"));
@@ -100,6 +106,14 @@ const transport = new Transport(
   () => editor.spaceMovedPicture,
 );
 
+const loading = new Loading({
+  complain,
+  isBusy: () => session.isBusy || session.isSaving,
+  hasConflict: () => session.conflict !== null,
+  state: () => state,
+});
+const exporting = new ExportMenu(part("export-menu"), part("export-note"));
+
 async function command(method, path, body) {
   try {
     complaint = "";
@@ -127,8 +141,9 @@ async function excludeAll(numbers) {
   }
 }
 
-function complain(sentence) {
+function complain(sentence, kind = "bad") {
   complaint = sentence;
+  complaintKind = kind;
   showBanner();
 }
 
@@ -136,15 +151,30 @@ function showState(next) {
   // The answer to an order may arrive after the news of what followed it.
   if (next.serial < newestSerial) return;
   newestSerial = next.serial;
+  const before = state;
   state = next;
+  if (before && before.source.key !== state.source.key) forgetSource(before);
   showSource(state);
   showHull(state);
   showBanner();
+  loading.update(state);
+  exporting.update(state);
   carving.update(state);
   review.update(state);
   transport.update(state);
   panel.bringOverlays(state.hull?.revision);
   bringFrame();
+}
+
+/** Another source was loaded, here or elsewhere, or the server was started anew. */
+function forgetSource(before) {
+  const hadEdits = session.conflict || (before.frames_info ?? []).some((info) => info.edited);
+  const why = isAnew ? "The server was started anew" : `${state.source.name} was loaded`;
+  const isTold = hadEdits && !loading.isOwn(state);
+  complain(isTold ? `${why}: the edits of ${before.source.name} are gone.` : "");
+  isAnew = false;
+  frameOnShow = "";
+  session.clear();
 }
 
 /** Fetch and show the frame that the state names; one at a time, always ending at the latest. */
@@ -188,6 +218,7 @@ async function fetchFrame(key) {
 function showEditing() {
   toolbar?.update();
   showBanner();
+  showSaved(session, linkWasLost);
   // News that came while somebody was drawing has waited.
   if (state) bringFrame();
 }
@@ -200,8 +231,10 @@ function showProposal(rings) {
 function showBanner() {
   const lost = "The connection to the server is lost; trying again. What is on screen may be old.";
   const { conflict } = session;
-  if (linkWasLost) banner.show(lost);
-  else if (conflict) {
+  if (linkWasLost) {
+    const kept = `Your outline of frame ${conflict?.number} is kept on this page, not saved yet.`;
+    banner.show(conflict?.isUnsaved ? `${lost} ${kept}` : lost);
+  } else if (conflict) {
     const what = conflict.isUnsaved
       ? `Your outline of frame ${conflict.number} was not saved: the server did not answer.`
       : `Frame ${conflict.number} was changed on another page meanwhile.`;
@@ -209,8 +242,33 @@ function showBanner() {
       ["Keep mine", () => session.keepMine()],
       ["Take theirs", () => session.keepTheirs()],
     ]);
-  } else if (state?.message) banner.show(state.message);
-  else banner.show(complaint, [["Dismiss", () => complain("")]]);
+  } else if (complaint) banner.show(complaint, [["Dismiss", () => complain("")]], complaintKind);
+  else if (state?.message && dismissed !== noticeKey()) showFailure();
+  else if (state && fewViewsText(state) && dismissed !== noticeKey()) {
+    banner.show(fewViewsText(state), [["Dismiss", dismiss]], "note");
+  } else banner.show("");
+}
+
+const noticeKey = () => `${state.source.key}/${state.run}`;
+
+function dismiss() {
+  dismissed = noticeKey();
+  showBanner();
+}
+
+/** What a program says, as a person writes it. */
+function sentence(text) {
+  return `${text.charAt(0).toUpperCase()}${text.slice(1).replace(/[.!?]*$/, "")}.`;
+}
+
+function showFailure() {
+  const { message, frames } = state;
+  const kept = frames === 0 ? "" : ` The ${frames === 1 ? "frame" : `${frames} frames`} before that can still be edited and measured.`;
+  banner.show(`${sentence(message)}${kept}`, [
+    ["Try again", () => command("POST", "/api/playback", { action: "restart" })],
+    ["Open another pass…", () => loading.choosePass()],
+    ["Dismiss", dismiss],
+  ]);
 }
 
 function showLink(link) {
@@ -220,11 +278,14 @@ function showLink(link) {
     frameOnShow = "";
     newestSerial = -1;
     complaint = "";
+    isAnew = true;
     // viser's client tries again only while its frame has the focus.
     part("viewport").contentWindow.location.reload();
   }
   linkWasLost = link === "lost";
+  exporting.setLost(linkWasLost);
   showBanner();
+  showSaved(session, linkWasLost);
 }
 
 function openSheet() {
@@ -286,12 +347,14 @@ bindShortcuts(
 );
 // A button that was pressed with the pointer leaves the keys to the picture.
 document.addEventListener("click", (event) => {
-  if (event.detail > 0 && event.target.closest(".frame button, .tool-list button")) {
+  if (event.detail > 0 && event.target.closest(".frame button, .tool-list button, .history button")) {
     part("frame-canvas").focus({ preventScroll: true });
   }
 });
 fillSheet(part("sheet-groups"));
 part("open-sheet").addEventListener("click", openSheet);
+part("stop-imaging").addEventListener("click", () => command("POST", "/api/playback", { action: "pause" }));
+loading.takeDropsOn(part("viewport"));
 listenInSpace(part("viewport"), (event) => {
   if (event.key === "Escape") part("frame-canvas").focus();
   else transport.onKeyInSpace(event);

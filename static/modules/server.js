@@ -20,6 +20,26 @@ export async function send(method, path, body) {
   return response.json();
 }
 
+/** Send a file; `tell(sent, total)` follows it. Gives the answer as `done`, and `cancel()`. */
+export function upload(path, file, tell) {
+  // fetch does not tell how much of a body has gone.
+  const request = new XMLHttpRequest();
+  request.open("POST", path);
+  request.setRequestHeader("Content-Type", "application/octet-stream");
+  request.responseType = "json";
+  request.upload.addEventListener("progress", ({ loaded, total }) => tell(loaded, total));
+  const done = new Promise((resolve, reject) => {
+    request.addEventListener("load", () => {
+      if (request.status < 400) resolve(request.response);
+      else reject(new Error(request.response?.detail ?? `The server answered ${request.status} to ${path}.`));
+    });
+    request.addEventListener("error", () => reject(new Error("The server does not answer; is it still running?")));
+    request.addEventListener("abort", () => reject(new DOMException("given up", "AbortError")));
+  });
+  request.send(file);
+  return { done, cancel: () => request.abort() };
+}
+
 /** Ask what a tool would make of a frame's outline; changes nothing. */
 export function propose(number, tool, parameters, rings) {
   const body = { tool, parameters, rings: rings.length > 0 ? rounded(rings) : null };

@@ -14,6 +14,8 @@ export class Session {
   isBusy = false;
   /** The outline that lost to another page's, or was not saved, until it is kept or given up. */
   conflict = null;
+  /** Grows with every frame that is taken off, so that an answer about it is known as old. */
+  #epoch = 0;
   #revisions = new Map();
   #pending = 0;
   #chain = Promise.resolve();
@@ -47,6 +49,7 @@ export class Session {
   }
 
   clear() {
+    this.#epoch += 1;
     this.frame = null;
     this.rings = [];
     this.conflict = null;
@@ -93,7 +96,7 @@ export class Session {
     this.claim = claim;
     this.#onChange();
     if (isSame && !this.isSaving) return this.withdraw();
-    const job = { number, ...this.#body(rings, claim, tool) };
+    const job = { number, epoch: this.#epoch, ...this.#body(rings, claim, tool) };
     return this.#queue(() => this.#save(job));
   }
 
@@ -157,7 +160,7 @@ export class Session {
     return this.#chain;
   }
 
-  async #save({ number, ...body }) {
+  async #save({ number, epoch, ...body }) {
     if (this.conflict?.number === number) {
       // What was drawn after the lost outline is the one to keep.
       this.conflict = { ...this.conflict, ...body };
@@ -170,6 +173,7 @@ export class Session {
     try {
       return await send("PUT", `/api/frames/${number}/silhouette`, body);
     } catch (error) {
+      if (epoch !== this.#epoch) throw error;
       if (error.status === undefined) {
         this.conflict = { number, ...body, isUnsaved: true };
         return undefined;

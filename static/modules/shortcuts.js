@@ -87,7 +87,7 @@ export function isTaken(event) {
   if (document.querySelector("dialog[open]")) return true;
   if (target.matches?.("input[type=range]")) return NAVIGATION.test(event.key);
   if (target.closest?.("input, select, textarea, [contenteditable]")) return true;
-  return Boolean(target.closest?.("button, summary, [role=tab]")) && [" ", "Enter"].includes(event.key);
+  return Boolean(target.closest?.("a[href], button, summary, [role=tab]")) && [" ", "Enter"].includes(event.key);
 }
 
 /** Fill the sheet of shortcuts. */

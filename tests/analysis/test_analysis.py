@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.analysis.analysis import Analysis
-from core.analysis.history import NothingLeft, StaleRevision
+from core.analysis.history import NothingLeft, Outlined, StaleRevision
 from core.hull.drawing import drawn_silhouette
 from core.hull.volume import VoteVolume
 from core.reconstruction import reconstruct
@@ -260,3 +260,29 @@ def test_the_volume_holds_one_view_per_frame_in_order():
     assert isinstance(of.volume, VoteVolume)
     assert list(of.volume.voters) == [0, 1, 2, 3, 4, 5]
     assert [voter.votes for voter in of.volume.voters.values()] == [True] * 5 + [False]
+
+
+def test_several_outlines_are_taken_over_together_or_not_at_all():
+    work = analysis(count=3)
+    before = work.revision
+    square = drawn_silhouette(
+        [[[60, 60], [60, 100], [100, 100], [100, 60]]], image_shape=(160, 160), claim="lit side"
+    )[0]
+    outlined = Outlined(silhouette=square, tool="import")
+    with pytest.raises(ValueError, match="There is no frame 9"):
+        work.commit_all({1: outlined, 9: outlined})
+    assert work.revision == before
+    assert not work.frame(1).history.is_edited
+    work.commit_all({1: outlined, 3: outlined})
+    assert [frame.history.is_edited for frame in work.frames] == [True, False, True]
+    assert_same_hull(work, from_scratch(work))
+    assert [edit.tool for edit in work.journal] == ["import", "import"]
+
+
+def test_revisions_go_on_from_those_of_an_earlier_analysis():
+    later = Analysis(COARSE, revision=40)
+    later.receive(FRAMES[0], OUTLINES[0])
+    assert later.frame(1).history.revision == 40
+    assert later.hull.revision == 41
+    with pytest.raises(StaleRevision):
+        later.commit(1, OUTLINES[0], tool="move", base_revision=0)

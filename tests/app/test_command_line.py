@@ -442,3 +442,7 @@ def test_no_telescope_sees_a_target_in_the_earths_shadow(tmp_path, capsys):
 
 def test_the_workstation_does_not_wait_for_all_frames(capsys):
     assert "waits for all frames" in refused(capsys, "serve", "--register", "agreement")
+
+
+def test_the_workstation_begins_with_a_pass_or_without(capsys):
+    assert "begins without a source" in refused(capsys, "serve", "pass.h5", "--empty")

@@ -11,7 +11,7 @@ from tests.app.running import awaited
 SOCKETS = ("/api/live", "/viewport")
 
 
-def status_of(*headers: tuple[str, str]) -> int:
+def status_of(*headers: tuple[str, str], path: str = "/") -> int:
     """The gate's own answer, for headers that some HTTP servers refuse before it; 200 behind it."""
 
     async def page(scope: Scope, receive: Receive, send: Send) -> None:
@@ -25,7 +25,7 @@ def status_of(*headers: tuple[str, str]) -> int:
 
     sent: list[Message] = []
     raw = [(name.encode(), value.encode("latin-1")) for name, value in headers]
-    awaited(Gate(page)({"type": "http", "headers": raw}, receive, send))
+    awaited(Gate(page)({"type": "http", "path": path, "headers": raw}, receive, send))
     return sent[0]["status"]
 
 
