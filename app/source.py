@@ -4,6 +4,10 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from core.frame import Frame
+from core.radar.course import PassCourse
+
+NO_COURSE: Callable[[], tuple[PassCourse, ...]] = tuple
+"""Of frames that come without a track."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -15,9 +19,11 @@ class Source:
         description: one sentence on what the frames show.
         frames: starts a fresh sequence of frames; it may take its time over each.
         expected_frames: how many will come, None where that is unknown.
+        course: gives the course of each pass, at once but for the first time; empty without tracks.
     """
 
     name: str
     frames: Callable[[], Iterable[Frame]]
     description: str = ""
     expected_frames: int | None = None
+    course: Callable[[], tuple[PassCourse, ...]] = NO_COURSE
