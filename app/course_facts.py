@@ -40,9 +40,10 @@ def pass_facts(course: PassCourse) -> dict[str, Any]:
     theta_rad, phi_rad = angles_from_line_of_sight(course.line_of_sight)
     return {
         "label": course.label,
+        "epoch_utc": course.epoch_utc,
         "judged": _judged(course),
         "time_s": _rounded(course.time_s, 3),
-        "azimuth_deg": _degrees(course.azimuth_rad),
+        "azimuth_deg": _compass_degrees(course.azimuth_rad),
         "elevation_deg": _degrees(course.elevation_rad),
         "theta_deg": _degrees(theta_rad),
         "phi_deg": _degrees(phi_rad),
@@ -76,6 +77,11 @@ def _judged(course: PassCourse) -> str:
         f"{_CRITERIA[division.criterion]}."
     )
     return f"{sentence} All are imaged whole." if course.images_whole else sentence
+
+
+def _compass_degrees(azimuth_rad: Floats | None) -> list[float | None] | None:
+    """Return 0° to 360°; a track may go on counting beyond north."""
+    return None if azimuth_rad is None else _degrees(np.mod(azimuth_rad, 2 * np.pi))
 
 
 def _degrees(angle_rad: Floats | None) -> list[float | None] | None:

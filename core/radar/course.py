@@ -53,6 +53,7 @@ class PassCourse:
             pass was divided.
         division: by which they were made and judged, None where that is not known.
         images_whole: whether images are made of the intervals as wanted, whatever the verdict.
+        epoch_utc: ISO 8601 time of time_s = 0, empty without an orbit.
     """
 
     label: str
@@ -65,6 +66,7 @@ class PassCourse:
     intervals: tuple[CourseInterval, ...]
     division: Division | None
     images_whole: bool = False
+    epoch_utc: str = ""
 
     def __post_init__(self) -> None:
         time_s = frozen(self.time_s, np.float64, (None,), "Times of the course")
@@ -152,6 +154,7 @@ def _course(
         intervals=intervals,
         division=division,
         images_whole=images_whole,
+        epoch_utc=track.epoch_utc,
     )
 
 
