@@ -49,11 +49,10 @@ export class CoursePlots {
 
   /** Mark where frames lie, and the one that is shown. */
   setFrames(frames, shown) {
-    const isNew = frames.length !== this.#frames.length || frames.some((at, i) => at !== this.#frames[i]);
     this.#frames = frames;
     this.#shown = shown;
-    for (const { plot, mark } of this.#plots) {
-      if (isNew) plot.redraw(false);
+    for (const { plot, mark, ticks } of this.#plots) {
+      if (ticks !== null) drawTicks(ticks, frames.filter((at) => at !== null).map((at) => plot.valToPos(at, "x")));
       const place = frames[shown - 1] ?? null;
       mark.hidden = place === null;
       if (place !== null) mark.style.transform = `translateX(${plot.valToPos(place, "x")}px)`;
@@ -65,9 +64,11 @@ export class CoursePlots {
     const mark = document.createElement("div");
     mark.className = "frame-mark";
     mark.hidden = true;
-    plot.over.append(mark);
+    const ticks = isLast ? document.createElement("canvas") : null;
+    if (isLast) ticks.className = "frame-ticks";
+    plot.over.append(mark, ...(isLast ? [ticks] : []));
     this.#listen(plot);
-    return { plot, mark, quantities, isLast };
+    return { plot, mark, ticks, quantities, isLast };
   }
 
   #options(quantities, isLast) {
@@ -107,7 +108,7 @@ export class CoursePlots {
       ],
       hooks: {
         drawClear: [(plot) => this.#shade(plot)],
-        draw: [(plot) => this.#markFrames(plot, isLast)],
+        draw: isLast ? [(plot) => this.#namePasses(plot)] : [],
         setCursor: [(plot) => this.#follow(plot)],
       },
     };
@@ -158,13 +159,12 @@ export class CoursePlots {
     const position = (place) => valToPos(place, "x", true);
     ctx.save();
     for (const span of this.#axis.spans) {
-      for (const interval of span.pass.intervals) {
-        if (interval.verdict === "accepted") continue;
-        const left = position(this.#axis.place(span, interval.start_s));
-        const width = position(this.#axis.place(span, interval.stop_s)) - left;
-        ctx.fillStyle = SHADES[interval.verdict];
+      for (const { verdict, start, stop } of stretches(span.pass.intervals)) {
+        const left = position(this.#axis.place(span, start));
+        const width = position(this.#axis.place(span, stop)) - left;
+        ctx.fillStyle = SHADES[verdict];
         ctx.fillRect(left, bbox.top, width, bbox.height);
-        if (interval.verdict === "rejected") hatch(ctx, left, bbox.top, width, bbox.height);
+        if (verdict === "rejected") hatch(ctx, left, bbox.top, width, bbox.height);
       }
     }
     ctx.fillStyle = "#0b0e14";
@@ -175,15 +175,10 @@ export class CoursePlots {
     ctx.restore();
   }
 
-  #markFrames({ ctx, bbox, valToPos }, isLast) {
-    if (!isLast) return;
+  #namePasses({ ctx, bbox, valToPos }) {
     const ratio = devicePixelRatio;
     const bottom = bbox.top + bbox.height;
     ctx.save();
-    ctx.fillStyle = "#40e0d0";
-    for (const place of this.#frames) {
-      if (place !== null) ctx.fillRect(valToPos(place, "x", true) - ratio / 2, bottom - 4 * ratio, ratio, 4 * ratio);
-    }
     ctx.fillStyle = "#dde3ec";
     ctx.font = TICK_FONT.replace("11", String(11 * ratio));
     ctx.textAlign = "left";
@@ -229,6 +224,16 @@ export class CoursePlots {
   }
 }
 
+/** Mark places along the bottom; a canvas of its own, for frames come often and curves do not. */
+function drawTicks(canvas, places) {
+  const ratio = devicePixelRatio;
+  canvas.width = canvas.clientWidth * ratio;
+  canvas.height = canvas.clientHeight * ratio;
+  const ctx = canvas.getContext("2d");
+  ctx.fillStyle = "#40e0d0";
+  for (const place of places) ctx.fillRect((place - 0.5) * ratio, 0, ratio, canvas.height);
+}
+
 /** What a pass is called on the axis, with its beginning where an orbit tells it. */
 function nameOf(pass) {
   const begin = pass.epoch_utc && new Date(pass.epoch_utc);
@@ -236,6 +241,20 @@ function nameOf(pass) {
   if (!begin || Number.isNaN(begin.getTime())) return name;
   const day = `${begin.getUTCDate()} ${MONTHS[begin.getUTCMonth()]}`;
   return `${name}, ${day} ${begin.toISOString().slice(11, 16)} UTC`;
+}
+
+/** Runs of intervals of one verdict that is not the best, as one stretch each: few to draw. */
+function stretches(intervals) {
+  const found = [];
+  for (const { verdict, start_s: start, stop_s: stop } of intervals) {
+    if (verdict === "accepted") continue;
+    const last = found.at(-1);
+    // Between the pulses of neighbours lies one pulse interval.
+    const isNext = last?.verdict === verdict && start - last.stop < 0.05 * (stop - start);
+    if (isNext) last.stop = stop;
+    else found.push({ verdict, start, stop });
+  }
+  return found;
 }
 
 function hatch(ctx, left, top, width, height) {

@@ -45,9 +45,13 @@ export function plotted(passes) {
 export function values(pass, { key, turn }) {
   const all = pass[key] ?? pass.time_s.map(() => null);
   if (turn === undefined) return all;
-  const jumps = (index) => Math.abs(all[index] - all[index - 1]) > turn / 2;
-  // Two samples are left out, or the stroke across one would show on both sides of it.
-  return all.map((value, index) => (jumps(index) || jumps(index + 1) ? null : value));
+  const jumps = all.map((value, index) => Math.abs(value - all[index - 1]) > turn / 2);
+  // Samples lie closer than pixels; the stroke across a gap of one would show.
+  const margin = Math.ceil(all.length / 130);
+  return all.map((value, index) => {
+    const isNear = jumps.slice(Math.max(index - margin + 1, 0), index + margin + 1).some(Boolean);
+    return isNear ? null : value;
+  });
 }
 
 /** A pass's value at a time: that of the nearest sample. */

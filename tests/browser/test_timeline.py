@@ -15,9 +15,9 @@ from tests.app.synthetic import frames, source
 
 AXE = Path(__file__).parent / "vendor" / "axe.min.js"
 
-COUNT = 12
+COUNT = 6
 
-INK = """(colour) => [...document.querySelectorAll("#course-plots canvas")].map((canvas) => {
+INK = """(colour) => [...document.querySelectorAll(".u-wrap > canvas")].map((canvas) => {
   const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
   let count = 0;
   for (let at = 0; at < data.length; at += 4) {
@@ -34,8 +34,8 @@ def observed() -> Source:
 
     def come():
         for number, each in enumerate(frames(COUNT)):
-            label = f"pass {1 + number // 6}"
-            yield replace(each, time_s=8.0 + 16.0 * (number % 6), label=label)
+            label = f"pass {1 + number // 3}"
+            yield replace(each, time_s=16.0 + 32.0 * (number % 3), label=label)
 
     courses = (COURSE, replace(COURSE, label="pass 2", epoch_utc="2016-03-12T19:27:40Z"))
     return Source(name="two passes", frames=come, expected_frames=COUNT, course=lambda: courses)
@@ -62,7 +62,7 @@ def place_of(page: Page, number: int) -> tuple[float, float]:
     box = page.locator("#course-plots .u-over").first.bounding_box()
     assert box is not None
     index = number - 1
-    time_s = 8.0 + 16.0 * (index % 6) + (104.0 if index >= 6 else 0.0)
+    time_s = 16.0 + 32.0 * (index % 3) + (104.0 if index >= 3 else 0.0)
     return box["x"] + box["width"] * time_s / 204.0, box["y"] + box["height"] / 2
 
 
@@ -91,9 +91,9 @@ def test_plots_are_read_clicked_scrubbed_and_put_away(timeline) -> None:
         assert lower > 200
     assert abs(marked(page) - place_of(page, COUNT)[0]) < 2
 
-    page.mouse.move(*place_of(page, 9))
+    page.mouse.move(*place_of(page, 5))
     expect(page.locator("#course-readout .title")).to_have_text(
-        re.compile(r"pass 2, (39|40)\.\d.s *frame 9")
+        re.compile(r"pass 2, (47|48)\.\d.s *frame 5")
     )
     assert reading(page)["Interval"] == "shortened"
     expect(page.locator("#course-note")).to_contain_text("shortened to 0.")
@@ -101,17 +101,17 @@ def test_plots_are_read_clicked_scrubbed_and_put_away(timeline) -> None:
     assert re.fullmatch(r"[\d.]+\u202f°/s", reading(page)["Rotation rate"])
     expect_shown(page, COUNT)
 
-    page.mouse.click(*place_of(page, 3))
-    expect_shown(page, 3)
-    assert abs(marked(page) - place_of(page, 3)[0]) < 2
+    page.mouse.click(*place_of(page, 2))
+    expect_shown(page, 2)
+    assert abs(marked(page) - place_of(page, 2)[0]) < 2
     page.mouse.down()
-    for number in range(4, 9):
+    for number in range(3, 6):
         page.mouse.move(*place_of(page, number))
     page.mouse.up()
-    expect_shown(page, 8)
+    expect_shown(page, 5)
     page.mouse.move(10, 10)
     expect(page.locator("#course-note")).to_be_hidden()
-    expect(page.locator("#course-readout .title")).to_contain_text("frame 8")
+    expect(page.locator("#course-readout .title")).to_contain_text("frame 5")
 
     page.evaluate(AXE.read_text("utf-8"))
     found = page.evaluate("axe.run(document, { iframes: false })")["violations"]
@@ -120,7 +120,7 @@ def test_plots_are_read_clicked_scrubbed_and_put_away(timeline) -> None:
     page.get_by_role("button", name="Plots").click()
     expect(page.locator("#course")).to_be_hidden()
     page.reload()
-    expect_shown(page, 8)
+    expect_shown(page, 5)
     expect(page.get_by_role("button", name="Plots")).to_have_attribute("aria-pressed", "false")
     page.get_by_role("button", name="Plots").click()
     expect(page.locator("#course-plots canvas").first).to_be_visible()
@@ -134,14 +134,14 @@ def picture(page: Page, number: int) -> dict[str, Any]:
 
 
 def test_cells_show_pictures_that_follow_edits_and_what_frames_do_to_the_hull(visit) -> None:
-    visited = visit(source(8))
+    visited = visit(source(4))
     page = visited.page
-    expect(page.locator("#cells > div")).to_have_count(8)
+    expect(page.locator("#cells > div")).to_have_count(4)
     expect(page.locator("#cells img")).to_have_count(0)
     expect(page.get_by_role("button", name="Plots")).to_be_disabled()
     page.get_by_role("button", name="Play").click()
-    expect(page.locator("#status")).to_have_text("All 8 frames received")
-    for number in (1, 8):
+    expect(page.locator("#status")).to_have_text("All 4 frames received")
+    for number in (1, 4):
         expect(page.locator(f"#frame-{number} img")).to_have_js_property("naturalWidth", 80)
     before = picture(page, 2)["source"]
     corners = [[40.0, 40.0], [40.0, 120.0], [120.0, 120.0], [120.0, 40.0]]
