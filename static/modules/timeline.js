@@ -108,7 +108,7 @@ export class Timeline {
       ...this.#plots.quantities.map((quantity) =>
         row(quantity.key, quantity.name, reading(quantity, valueAt(pass, quantity, time))),
       ),
-      verdictRow(intervalAt(pass, time)),
+      ...(pass.intervals.length > 0 ? [verdictRow(intervalAt(pass, time))] : []),
     );
     if (place !== null) this.#explain(pass, intervalAt(pass, time), left);
   }
