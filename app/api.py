@@ -60,7 +60,7 @@ def read_colours(name: ColourName = "magma") -> list[list[int]]:
 @router.get("/frames/{number}")
 def read_frame(number: int, stream: Stream) -> dict[str, Any]:
     """Return a frame's circumstances, its silhouette, and the hull after it."""
-    return frame_facts(record_at(stream, number))
+    return facts_of(stream, number)
 
 
 @router.get("/frames/{number}/image")
@@ -127,6 +127,11 @@ async def _until_hung_up(page: WebSocket) -> None:
 def state_of(stream: LiveStream) -> dict[str, Any]:
     """Return what the workstation shows now."""
     return state_facts(stream.snapshot, stream.source)
+
+
+def facts_of(stream: LiveStream, number: int) -> dict[str, Any]:
+    """Return what is known of frame `number`, or answer that there is none."""
+    return frame_facts(record_at(stream, number), stream.source.course())
 
 
 def record_at(stream: LiveStream, number: int) -> Record:

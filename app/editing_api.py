@@ -8,8 +8,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, HTTPException
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.api import Stream, record_at, state_of
-from app.facts import frame_facts
+from app.api import Stream, facts_of, record_at, state_of
 from app.proposals import TOOLS, Question, proposal, reprojected_rings
 from core.analysis.analysis import Analysis
 from core.analysis.frames import ReviewState
@@ -87,7 +86,7 @@ def commit_outline(number: int, order: OutlineOrder, stream: Stream) -> dict[str
                 repair=repair,
             )
         )
-    return frame_facts(record_at(stream, number))
+    return facts_of(stream, number)
 
 
 @router.put("/frames/{number}/preview")
@@ -96,7 +95,7 @@ def preview_outline(number: int, order: OutlineOrder, stream: Stream) -> dict[st
     with _refusing():
         silhouette, _ = _drawn(number, order, stream)
         stream.preview(number, silhouette, base_revision=order.base_revision)
-    return frame_facts(record_at(stream, number))
+    return facts_of(stream, number)
 
 
 @router.delete("/frames/{number}/preview")
@@ -104,7 +103,7 @@ def end_preview(number: int, stream: Stream) -> dict[str, Any]:
     """Show the hull of the committed outlines again."""
     record_at(stream, number)
     stream.end_preview()
-    return frame_facts(record_at(stream, number))
+    return facts_of(stream, number)
 
 
 @router.post("/frames/{number}/undo")
@@ -180,7 +179,7 @@ def _edited(number: int, stream: Stream, operation: Callable[[Analysis], object]
     record_at(stream, number)
     with _refusing():
         stream.edit(operation)
-    return frame_facts(record_at(stream, number))
+    return facts_of(stream, number)
 
 
 def _drawn(number: int, order: OutlineOrder, stream: Stream) -> tuple[Silhouette, str]:

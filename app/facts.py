@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from app.course_facts import interval_facts
 from app.pictures import FLOOR_DB, STEP_DB
 from app.playback import SPEEDS_HZ
 from app.snapshot import Record, Snapshot
@@ -14,6 +15,7 @@ from core.geometry.track import angles_from_line_of_sight
 from core.hull.simplification import Simplified
 from core.measurement.extents import Extent
 from core.measurement.lines import LineMeasurement
+from core.radar.course import PassCourse
 from core.reconstruction import ReconstructionSettings
 
 
@@ -94,9 +96,10 @@ def _light_facts(light: Simplified) -> dict[str, Any]:
     return {"faces": len(light.surface.faces), "error_m": light.error_m}
 
 
-def frame_facts(record: Record) -> dict[str, Any]:
+def frame_facts(record: Record, course: tuple[PassCourse, ...] = ()) -> dict[str, Any]:
     """Return a frame's circumstances, its silhouette, and the hull when it had come.
 
+    `interval` tells what was imaged, where the `course` of the frame's pass is known.
     `theta_deg` and `phi_deg` are the line of sight's angles in the target frame, not the station's
     elevation and azimuth.
     """
@@ -118,6 +121,7 @@ def frame_facts(record: Record) -> dict[str, Any]:
         "theta_deg": float(np.degrees(theta_rad)),
         "phi_deg": float(np.degrees(phi_rad)),
         "image": {"floor_db": FLOOR_DB, "step_db": STEP_DB},
+        "interval": interval_facts(frame, course),
         "state": record.analysed.state,
         "silhouette": _silhouette_facts(record),
         "hull": hull_facts(record.hull),

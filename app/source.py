@@ -5,6 +5,10 @@ from dataclasses import dataclass, field
 from uuid import uuid4
 
 from core.frame import Frame
+from core.radar.course import PassCourse
+
+NO_COURSE: Callable[[], tuple[PassCourse, ...]] = tuple
+"""Of frames that come without a track."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -16,6 +20,7 @@ class Source:
         description: one sentence on what the frames show.
         frames: starts a fresh sequence of frames; it may take its time over each.
         expected_frames: how many will come, None where that is unknown.
+        course: gives the course of each pass, at once but for the first time; empty without tracks.
         key: another for every source, so that a page knows when another was loaded.
     """
 
@@ -23,6 +28,7 @@ class Source:
     frames: Callable[[], Iterable[Frame]]
     description: str = ""
     expected_frames: int | None = None
+    course: Callable[[], tuple[PassCourse, ...]] = NO_COURSE
     key: str = field(default_factory=lambda: uuid4().hex)
 
 

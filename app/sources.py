@@ -1,12 +1,14 @@
 """The sources that commands play and carve: the demo, and pass files."""
 
 from collections.abc import Sequence
+from functools import cache
 from itertools import chain
 from pathlib import Path
 
-from app.source import Source
-from core.experiments.demo import DEMO_PASSES, FRAMES_PER_PASS, demo_frames
+from app.source import NO_COURSE, Source
+from core.experiments.demo import DEMO_PASSES, FRAMES_PER_PASS, demo_courses, demo_frames
 from core.formats.pass_file import read_pass
+from core.radar.course import course_of_echoes, undivided_course
 from core.radar.imaging import frame_count, frames
 
 MIN_VIEWS = 2
@@ -19,6 +21,7 @@ def demo_source() -> Source:
         description="Echoes simulated at 16.7 GHz, 1 GHz bandwidth, 100 pulses per second.",
         frames=demo_frames,
         expected_frames=FRAMES_PER_PASS * len(DEMO_PASSES),
+        course=cache(demo_courses),
     )
 
 
@@ -31,11 +34,19 @@ def pass_source(path: Path) -> Source:
     recorded = read_pass(path)
     received, history = recorded.frames, recorded.history
     if history is None or any(frame.sensor == "radar" for frame in received):
-        return Source(name=path.name, frames=lambda: received, expected_frames=len(received))
+        return Source(
+            name=path.name,
+            frames=lambda: received,
+            expected_frames=len(received),
+            course=NO_COURSE
+            if history is None
+            else cache(lambda: (undivided_course(history.track),)),
+        )
     return Source(
         name=path.name,
         frames=lambda: chain(frames(history), received),
         expected_frames=frame_count(history) + len(received),
+        course=cache(lambda: (course_of_echoes(history),)),
     )
 
 

@@ -9,11 +9,20 @@ from fastapi.responses import HTMLResponse, JSONResponse, RedirectResponse
 from starlette.exceptions import HTTPException
 from starlette.staticfiles import StaticFiles
 
-from app import api, editing_api, export_api, silhouettes_api, source_api
+from app import (
+    api,
+    course_api,
+    editing_api,
+    export_api,
+    silhouettes_api,
+    source_api,
+    thumbnails_api,
+)
 from app.changes import Changes
 from app.gate import LOOPBACK_NAMES, Gate
 from app.relay import relay
 from app.stream import LiveStream
+from app.thumbnails import Thumbnails
 from app.viewport_page import viewport_page
 from app.viser_server import ViserAddress
 
@@ -34,12 +43,18 @@ def create_app(
     app = FastAPI(title="radarhull", docs_url=None, redoc_url=None, openapi_url="/openapi.json")
     app.state.stream = stream
     app.state.changes = Changes()
+    app.state.thumbnails = Thumbnails()
     stream.observe(lambda _: app.state.changes.notify())
-    app.include_router(api.router)
-    app.include_router(editing_api.router)
-    app.include_router(source_api.router)
-    app.include_router(export_api.router)
-    app.include_router(silhouettes_api.router)
+    for part in (
+        api,
+        course_api,
+        editing_api,
+        export_api,
+        silhouettes_api,
+        source_api,
+        thumbnails_api,
+    ):
+        app.include_router(part.router)
     _add_viewport(app, viewport)
     app.mount("/", StaticFiles(directory=static_folder(), html=True), name="static")
     app.add_exception_handler(RequestValidationError, _explain_invalid)

@@ -17,6 +17,7 @@ from core.geometry.orbit import (
 )
 from core.geometry.track import LineOfSightTrack
 from core.parallel import in_order
+from core.radar.course import PassCourse, pass_course
 from core.radar.echoes import simulate_echoes
 from core.radar.imaging import ImagingSettings, interval_frame
 from core.radar.intervals import CoherentInterval, divide
@@ -90,6 +91,22 @@ def demo_intervals(waveform: Waveform) -> list[tuple[int, LineOfSightTrack, Cohe
     return chosen
 
 
+def demo_courses() -> tuple[PassCourse, ...]:
+    """Return the course of each of the demo's passes, labelled as its frames are.
+
+    Intervals are judged for the whole target by what polar format, which images them, leaves. The
+    demo images all of them whole.
+    """
+    waveform = Waveform()
+    radius_m = float(np.linalg.norm(tiangong_like().mesh().vertices, axis=1).max().round(1))
+    settings = ImagingSettings(target_radius_m=radius_m, criterion="bending")
+    division = settings.division(waveform.wavelength_m)
+    return tuple(
+        pass_course(track, division, label=_label(number), images_whole=True)
+        for number, track in enumerate(demo_tracks(waveform), start=1)
+    )
+
+
 def demo_frames(*, seed: int = 1, scatterers: int = 25_000) -> Iterator[Frame]:
     """Simulate the demo's echoes interval by interval and yield their images as they come.
 
@@ -153,4 +170,8 @@ def _echoes(work: _Work) -> tuple[PhaseHistory, CoherentInterval, str]:
         signal_to_noise_db=20.0,
         random=work.random,
     )
-    return history, work.interval.alone(), f"pass {work.number}"
+    return history, work.interval.alone(), _label(work.number)
+
+
+def _label(number: int) -> str:
+    return f"pass {number}"

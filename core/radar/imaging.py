@@ -85,6 +85,17 @@ class ImagingSettings:
             self.pixel_spacing_m if column_m is None else column_m,
         )
 
+    def division(self, wavelength_m: float) -> Division:
+        """Return how a pass at a wavelength is divided into intervals."""
+        return Division(
+            wavelength_m=wavelength_m,
+            cross_range_resolution_m=self.cross_range_resolution_m,
+            overlap=self.overlap,
+            target_radius_m=self.target_radius_m,
+            criterion=self.criterion,
+            coarsest_resolution_m=self.coarsest_resolution_m,
+        )
+
 
 def frames(history: PhaseHistory, settings: ImagingSettings | None = None) -> Iterator[Frame]:
     """Divide a phase history into coherent intervals and yield their images in order.
@@ -118,15 +129,7 @@ def assessed_intervals(
         ValueError: the line of sight turns too little, or the target is larger than what the
             echoes tell apart.
     """
-    division = Division(
-        wavelength_m=history.wavelength_m,
-        cross_range_resolution_m=settings.cross_range_resolution_m,
-        overlap=settings.overlap,
-        target_radius_m=settings.target_radius_m,
-        criterion=settings.criterion,
-        coarsest_resolution_m=settings.coarsest_resolution_m,
-    )
-    assessed = assess(history.track, division)
+    assessed = assess(history.track, settings.division(history.wavelength_m))
     if settings.target_radius_m is not None:
         for each in assessed:
             _check_target(history, each.wanted, settings.target_radius_m)

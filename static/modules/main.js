@@ -16,6 +16,7 @@ import { bindShortcuts, fillSheet } from "./shortcuts.js";
 import { listenInSpace } from "./space-keys.js";
 import { fewViewsText, showSource } from "./source-view.js";
 import { Tabs } from "./tabs.js";
+import { Timeline } from "./timeline.js";
 import { Toolbar } from "./toolbar.js";
 import { Transport } from "./transport.js";
 
@@ -105,6 +106,16 @@ const transport = new Transport(
   (frame) => command("POST", "/api/shown", { frame }),
   () => editor.spaceMovedPicture,
 );
+const timeline = new Timeline(
+  {
+    course: part("course"),
+    plots: part("course-plots"),
+    readout: part("course-readout"),
+    note: part("course-note"),
+    toggle: part("toggle-plots"),
+  },
+  showFrame,
+);
 
 const loading = new Loading({
   complain,
@@ -162,6 +173,7 @@ function showState(next) {
   carving.update(state);
   review.update(state);
   transport.update(state);
+  timeline.update(state);
   panel.bringOverlays(state.hull?.revision);
   bringFrame();
 }

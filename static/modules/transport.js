@@ -1,7 +1,7 @@
 // Play, pause, step, speed, restart, the row of frames, and the keys for them.
 
-import { timeText, views } from "./numbers.js";
-import { STATES } from "./review.js";
+import { Cells } from "./cells.js";
+import { views } from "./numbers.js";
 
 const AS_FAST_AS_COMPUTED = "max";
 const TAP_MS = 500;
@@ -11,6 +11,7 @@ export class Transport {
   #send;
   #show;
   #parts;
+  #cells;
 
   #spaceSince = null;
   #isSpaceUsed;
@@ -29,7 +30,7 @@ export class Transport {
     parts.restart.addEventListener("click", () => send({ action: "restart" }));
     parts.follow.addEventListener("click", () => show(null));
     parts.speed.addEventListener("change", () => send({ speed_hz: speedOf(parts.speed.value) }));
-    parts.cells.addEventListener("click", (event) => this.#chooseCell(event));
+    this.#cells = new Cells(parts.cells, show);
     document.addEventListener("keydown", (event) => this.#onKey(event));
     document.addEventListener("keyup", (event) => event.code === "Space" && this.#onSpaceUp());
   }
@@ -46,7 +47,7 @@ export class Transport {
     follow.hidden = state.following;
     text.textContent = reelText(state);
     this.#updateSpeeds(state);
-    this.#updateCells(state);
+    this.#cells.update(state);
   }
 
   /** Space in the view in space plays and pauses too; its other keys move the camera. */
@@ -89,11 +90,6 @@ export class Transport {
     if (this.#state.shown > 1) this.#show(this.#state.shown - 1);
   }
 
-  #chooseCell(event) {
-    const number = Number(event.target.dataset.number);
-    if (number) this.#show(number === this.#state.frames ? null : number);
-  }
-
   #updateSpeeds(state) {
     const { speed } = this.#parts;
     const offered = [...new Set([...state.speeds_hz, state.speed_hz])];
@@ -102,42 +98,6 @@ export class Transport {
     }
     speed.value = speedKey(state.speed_hz);
   }
-
-  #updateCells(state) {
-    const { cells } = this.#parts;
-    const wanted = Math.max(state.source.expected_frames ?? 0, state.frames);
-    while (cells.children.length > wanted) cells.lastChild.remove();
-    while (cells.children.length < wanted) cells.append(document.createElement("div"));
-    [...cells.children].forEach((cell, index) => updateCell(cell, index + 1, state));
-    const shown = cells.children[(state.shown ?? 0) - 1];
-    if (shown) cells.setAttribute("aria-activedescendant", shown.id);
-  }
-}
-
-function updateCell(cell, number, state) {
-  const isReceived = number <= state.frames;
-  cell.className = isReceived ? "received" : "";
-  cell.classList.toggle("latest", number === state.frames);
-  cell.classList.toggle("shown", number === state.shown);
-  if (!isReceived) {
-    cell.removeAttribute("role");
-    cell.removeAttribute("title");
-    delete cell.dataset.number;
-    delete cell.dataset.state;
-    return;
-  }
-  cell.id = `frame-${number}`;
-  cell.dataset.number = number;
-  cell.role = "option";
-  cell.ariaSelected = String(number === state.shown);
-  const time = timeText(state.times_s[number - 1], state.labels[number - 1]);
-  const info = state.frames_info?.[number - 1];
-  cell.dataset.state = info?.state ?? "todo";
-  cell.classList.toggle("edited", Boolean(info?.edited));
-  const review = cell.dataset.state === "todo" ? [] : [STATES[cell.dataset.state]];
-  const words = [`Frame ${number}`, time, ...review, ...(info?.edited ? ["edited"] : [])];
-  cell.title = words.join(", ");
-  cell.ariaLabel = cell.title;
 }
 
 function reelText(state) {
