@@ -9,18 +9,21 @@ from fastapi.responses import HTMLResponse, JSONResponse, RedirectResponse
 from starlette.exceptions import HTTPException
 from starlette.staticfiles import StaticFiles
 
-from app import api, editing_api
+from app import api, editing_api, viewport_api
 from app.changes import Changes
 from app.gate import LOOPBACK_NAMES, Gate
 from app.relay import relay
 from app.stream import LiveStream
+from app.viewport_api import PageName
 from app.viewport_page import viewport_page
+from app.viewport_pages import ViewportPages
 from app.viser_server import ViserAddress
 
 
 def create_app(
     stream: LiveStream,
     viewport: ViserAddress,
+    pages: ViewportPages,
     *,
     host_names: Iterable[str] = LOOPBACK_NAMES,
 ) -> FastAPI:
@@ -29,6 +32,7 @@ def create_app(
     Args:
         stream: the live loop; whoever made it starts and stops it.
         viewport: where viser listens.
+        pages: whose cameras and layers can be set.
         host_names: names under which browsers may address the server.
     """
     app = FastAPI(title="radarhull", docs_url=None, redoc_url=None, openapi_url="/openapi.json")
@@ -37,6 +41,8 @@ def create_app(
     stream.observe(lambda _: app.state.changes.notify())
     app.include_router(api.router)
     app.include_router(editing_api.router)
+    app.state.viewport_pages = pages
+    app.include_router(viewport_api.router)
     _add_viewport(app, viewport)
     app.mount("/", StaticFiles(directory=static_folder(), html=True), name="static")
     app.add_exception_handler(RequestValidationError, _explain_invalid)
@@ -66,6 +72,7 @@ def _add_viewport(app: FastAPI, viewport: ViserAddress) -> None:
     headers = {"Content-Security-Policy": page.content_security_policy}
 
     @app.get("/viewport/", include_in_schema=False)
+    @app.get("/viewport/{name}/", include_in_schema=False)
     def viewport_client() -> HTMLResponse:
         return HTMLResponse(page.html, headers=headers)
 
@@ -73,10 +80,15 @@ def _add_viewport(app: FastAPI, viewport: ViserAddress) -> None:
     def viewport_folder() -> RedirectResponse:
         return RedirectResponse("/viewport/")
 
-    # viser's client drops the slash from its page's address to find its websocket.
+    # viser's client drops the slash from its page's address to find its websocket, but keeps the
+    # name before it: that tells whose client it is.
     @app.websocket("/viewport")
     async def viewport_socket(socket: WebSocket) -> None:
         await relay(socket, viewport)
+
+    @app.websocket("/viewport/{name}")
+    async def named_viewport_socket(socket: WebSocket, name: PageName) -> None:
+        await relay(socket, viewport, name=name)
 
 
 def _explain_invalid(_: Request, error: Exception) -> JSONResponse:

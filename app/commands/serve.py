@@ -9,6 +9,7 @@ from app.commands.options import Carving, CarvingOptions
 from app.server import DEFAULT_PORT
 from app.server import serve as serve_source
 from app.sources import demo_source, pass_sources
+from core.formats.meshes import read_mesh
 
 WORKSTATION_CARVING = Carving(spacing_m=0.2)
 """Coarser than the other commands: the hull is meshed anew with every frame that arrives."""
@@ -24,6 +25,7 @@ def serve(
     *,
     port: int = DEFAULT_PORT,
     open: bool = False,  # noqa: A002 - the flag's name on the command line
+    reference: Path | None = None,
     carving: CarvingOptions = WORKSTATION_CARVING,
 ) -> None:
     """Serve the workstation on one page of this machine.
@@ -32,6 +34,8 @@ def serve(
         pass_file: a pass file to play; without one, the built-in demo of three simulated passes.
         port: port on 127.0.0.1; 0 takes any free one.
         open: also open the page in the browser.
+        reference: a mesh (GLB, PLY, OBJ, STL) in metres of the target frame, to look at beside
+            the hull; nothing is computed from it.
         carving: how the hull is carved.
     """
     settings = carving.settings()
@@ -41,4 +45,10 @@ def serve(
             "comes; use radarhull reconstruct --register agreement, or --register centroid here."
         )
     source = demo_source() if pass_file is None else pass_sources([pass_file])[0]
-    serve_source(source, port=port, open_browser=open, settings=settings)
+    serve_source(
+        source,
+        port=port,
+        open_browser=open,
+        settings=settings,
+        reference=None if reference is None else read_mesh(reference),
+    )
