@@ -12,6 +12,8 @@ import { getJson, keepLinked, send } from "./server.js";
 import { bindShortcuts, fillSheet } from "./shortcuts.js";
 import { listenInSpace } from "./space-keys.js";
 import { showSource } from "./source-view.js";
+import { Share } from "./share.js";
+import { SpaceView } from "./space-view.js";
 import { Tabs } from "./tabs.js";
 import { Toolbar } from "./toolbar.js";
 import { Transport } from "./transport.js";
@@ -100,6 +102,9 @@ const transport = new Transport(
   () => editor.spaceMovedPicture,
 );
 
+const space = new SpaceView(complain);
+const share = new Share(space, panel, { showFrame, complain });
+
 async function command(method, path, body) {
   try {
     complaint = "";
@@ -144,6 +149,8 @@ function showState(next) {
   review.update(state);
   transport.update(state);
   panel.bringOverlays(state.hull?.revision);
+  space.update(state);
+  share.update(state);
   bringFrame();
 }
 
@@ -220,8 +227,7 @@ function showLink(link) {
     frameOnShow = "";
     newestSerial = -1;
     complaint = "";
-    // viser's client tries again only while its frame has the focus.
-    part("viewport").contentWindow.location.reload();
+    space.reconnect();
   }
   linkWasLost = link === "lost";
   showBanner();
