@@ -79,7 +79,7 @@ LAYERS = (
     ),
     Layer(
         name="sights",
-        title="Sights",
+        title="Lines of sight",
         hint="This frame's line of sight as an arrow, those of all frames as dots",
         colour=SIGHT_COLOUR,
     ),

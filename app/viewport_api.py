@@ -1,5 +1,6 @@
 """The JSON interface to a page's own view in space: its layers and its camera."""
 
+from dataclasses import replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -9,7 +10,15 @@ from starlette.requests import HTTPConnection
 
 from app.api import Stream
 from app.camera import VIEWS, Camera
-from app.layers import FIRST_LAYERS, LAYERS, Colour, Layer, component_colours, known_layers
+from app.layers import (
+    FIRST_LAYERS,
+    LAYERS,
+    Colour,
+    Layer,
+    component_colours,
+    hull_component,
+    known_layers,
+)
 from app.viewport_pages import ViewportPages
 
 router = APIRouter(prefix="/api/viewport")
@@ -59,9 +68,13 @@ def read_choices(stream: Stream, pages: Pages) -> dict[str, Any]:
     """Return the layers, the named views, and the colours of the hull's components."""
     labels = {record.silhouette.component for record in stream.snapshot.records}
     colours = component_colours(labels)
+    whole = colours[hull_component(labels)]
     offered = [layer for layer in LAYERS if layer.name != "reference" or pages.has_reference]
     return {
-        "layers": [_layer_facts(layer) for layer in offered],
+        "layers": [
+            _layer_facts(replace(layer, colour=whole) if layer.name == "hull" else layer)
+            for layer in offered
+        ],
         "views": [{"name": view.name, "hint": view.hint} for view in VIEWS.values()],
         "components": [
             {"label": label, "colour": _css(colour)} for label, colour in colours.items()

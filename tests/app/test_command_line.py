@@ -442,3 +442,7 @@ def test_no_telescope_sees_a_target_in_the_earths_shadow(tmp_path, capsys):
 
 def test_the_workstation_does_not_wait_for_all_frames(capsys):
     assert "waits for all frames" in refused(capsys, "serve", "--register", "agreement")
+
+
+def test_a_reference_that_is_no_mesh_is_named_before_anything_starts(capsys, tmp_path) -> None:
+    assert "There is no mesh file" in refused(capsys, "serve", "--reference", tmp_path / "a.stl")
