@@ -5,7 +5,7 @@ from typing import Annotated
 
 import tyro
 
-from app.commands.options import Carving, CarvingOptions
+from app.commands.options import Carving, CarvingOptions, OptionalFile
 from app.server import DEFAULT_PORT
 from app.server import serve as serve_source
 from app.sources import demo_source, pass_sources
@@ -25,7 +25,7 @@ def serve(
     *,
     port: int = DEFAULT_PORT,
     open: bool = False,  # noqa: A002 - the flag's name on the command line
-    reference: Path | None = None,
+    reference: OptionalFile = None,
     carving: CarvingOptions = WORKSTATION_CARVING,
 ) -> None:
     """Serve the workstation on one page of this machine.
