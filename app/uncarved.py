@@ -50,8 +50,9 @@ class UncarvedWatch:
     def want(self, is_wanted: bool) -> None:
         """Begin to keep it, or stop."""
         with self._changed:
+            if is_wanted and not self._is_wanted:
+                self._done = None  # what was shown before has been taken off since
             self._is_wanted = is_wanted
-            self._done = None
             self._changed.notify_all()
 
     def stop(self, timeout_s: float = 5.0) -> None:

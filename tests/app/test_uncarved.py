@@ -68,6 +68,7 @@ def test_a_failure_is_no_end(analysis, shown, wait_for, caplog) -> None:
     watch.want(True)
     wait_for(lambda: "could not be computed" in caplog.text)
     failing[0] = False
+    watch.want(False)
     watch.want(True)
     wait_for(lambda: len(shown) == 1)
     watch.stop()
