@@ -68,6 +68,7 @@ def frame_info(record: Record) -> dict[str, Any]:
         "revision": analysed.history.revision,
         "votes": analysed.votes,
         "sensor": record.frame.sensor,
+        "component": record.silhouette.component,
     }
 
 

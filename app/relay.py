@@ -11,11 +11,16 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from websockets.typing import Subprotocol
 
-from app.viser_server import SECRET_HEADER, ViserAddress
+from app.viser_server import PAGE_HEADER, SECRET_HEADER, ViserAddress
 
 
-async def relay(page: WebSocket, viewport: ViserAddress) -> None:
+async def relay(page: WebSocket, viewport: ViserAddress, *, name: str = "") -> None:
     """Carry messages between the page and the viser server until either hangs up.
+
+    Args:
+        page: its websocket.
+        viewport: where viser listens.
+        name: that the page gave itself, in plain letters.
 
     Raises:
         WebSocketException: the page sent text, which viser's client never does.
@@ -27,7 +32,7 @@ async def relay(page: WebSocket, viewport: ViserAddress) -> None:
         async with connect(
             viewport.url,
             subprotocols=[Subprotocol(viewport.subprotocol)],
-            additional_headers={SECRET_HEADER: viewport.secret},
+            additional_headers={SECRET_HEADER: viewport.secret, PAGE_HEADER: name},
             compression=None,
             max_size=None,
             proxy=None,

@@ -7,6 +7,7 @@ import webbrowser
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+import trimesh
 import uvicorn
 from fastapi import FastAPI
 
@@ -15,7 +16,9 @@ from app.gate import LOOPBACK_NAMES
 from app.playback import DEFAULT_SPEED_HZ, Playback
 from app.source import Source
 from app.stream import LiveStream, SurfaceOf
+from app.uncarved import UncarvedWatch
 from app.viewport import Viewport
+from app.viewport_pages import ViewportPages
 from app.viser_server import PrivateViserServer
 from app.web import create_app
 from core.hull.volume import VoteVolume
@@ -35,6 +38,7 @@ def serve(
     open_browser: bool = False,
     settings: ReconstructionSettings | None = None,
     speed_hz: float | None = DEFAULT_SPEED_HZ,
+    reference: trimesh.Trimesh | None = None,
 ) -> None:
     """Show the reconstruction of `source` in a browser until SIGINT or SIGTERM.
 
@@ -47,6 +51,7 @@ def serve(
         open_browser: whether to open the page in the user's browser.
         settings: how the hull is reconstructed.
         speed_hz: frames per second to start with, None for as fast as they are computed.
+        reference: a mesh in metres of the target frame, to look at beside the hull.
 
     Raises:
         ValueError: the host is not a loopback address, the port is in use or forbidden, or the
@@ -64,7 +69,11 @@ def serve(
         with (
             compiling() as compilation,
             workstation(
-                source, settings, playback=playback, surface_of=compilation.surface_of
+                source,
+                settings,
+                playback=playback,
+                surface_of=compilation.surface_of,
+                reference=reference,
             ) as app,
         ):
             WorkstationServer(app, announce).run(sockets=[listener])
@@ -77,16 +86,27 @@ def workstation(
     *,
     playback: Playback | None = None,
     surface_of: SurfaceOf = VoteVolume.surface,
+    reference: trimesh.Trimesh | None = None,
 ) -> Iterator[FastAPI]:
     """Run the live loop and the viewport, and give the application that shows them."""
     stream = LiveStream(source, settings, playback=playback, surface_of=surface_of)
     viser_server = PrivateViserServer()
+    viewport = Viewport(viser_server, reference=reference)
+    uncarved = UncarvedWatch(lambda: stream.volume, viewport.show_uncarved)
+
+    def want(layers: frozenset[str]) -> None:
+        viewport.want(layers)
+        uncarved.want("uncarved" in layers)
+
+    pages = ViewportPages(viser_server, want, has_reference=reference is not None)
     try:
-        app = create_app(stream, viser_server.address)
-        stream.observe(Viewport(viser_server).show)
+        app = create_app(stream, viser_server.address, pages)
+        stream.observe(viewport.show)
+        stream.observe(uncarved.note)
         stream.start()
         yield app
     finally:
+        uncarved.stop()
         stream.stop()
         viser_server.stop()
 

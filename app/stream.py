@@ -83,6 +83,11 @@ class LiveStream:
         """What is on show now; never waits, so that an event loop may ask."""
         return self._snapshot
 
+    @property
+    def volume(self) -> VoteVolume:
+        """The votes of the kept outlines; to be read only, under its lock."""
+        return self._analysis.volume
+
     def observe(self, observer: Observer) -> None:
         """Call `observer` with the present snapshot and with every later one."""
         with self._changing():

@@ -17,19 +17,23 @@ from app import (
     silhouettes_api,
     source_api,
     thumbnails_api,
+    viewport_api,
 )
 from app.changes import Changes
 from app.gate import LOOPBACK_NAMES, Gate
 from app.relay import relay
 from app.stream import LiveStream
 from app.thumbnails import Thumbnails
+from app.viewport_api import PageName
 from app.viewport_page import viewport_page
+from app.viewport_pages import ViewportPages
 from app.viser_server import ViserAddress
 
 
 def create_app(
     stream: LiveStream,
     viewport: ViserAddress,
+    pages: ViewportPages,
     *,
     host_names: Iterable[str] = LOOPBACK_NAMES,
 ) -> FastAPI:
@@ -38,6 +42,7 @@ def create_app(
     Args:
         stream: the live loop; whoever made it starts and stops it.
         viewport: where viser listens.
+        pages: whose cameras and layers can be set.
         host_names: names under which browsers may address the server.
     """
     app = FastAPI(title="radarhull", docs_url=None, redoc_url=None, openapi_url="/openapi.json")
@@ -45,6 +50,7 @@ def create_app(
     app.state.changes = Changes()
     app.state.thumbnails = Thumbnails()
     stream.observe(lambda _: app.state.changes.notify())
+    app.state.viewport_pages = pages
     for part in (
         api,
         course_api,
@@ -53,6 +59,7 @@ def create_app(
         silhouettes_api,
         source_api,
         thumbnails_api,
+        viewport_api,
     ):
         app.include_router(part.router)
     _add_viewport(app, viewport)
@@ -84,6 +91,7 @@ def _add_viewport(app: FastAPI, viewport: ViserAddress) -> None:
     headers = {"Content-Security-Policy": page.content_security_policy}
 
     @app.get("/viewport/", include_in_schema=False)
+    @app.get("/viewport/{name}/", include_in_schema=False)
     def viewport_client() -> HTMLResponse:
         return HTMLResponse(page.html, headers=headers)
 
@@ -91,10 +99,15 @@ def _add_viewport(app: FastAPI, viewport: ViserAddress) -> None:
     def viewport_folder() -> RedirectResponse:
         return RedirectResponse("/viewport/")
 
-    # viser's client drops the slash from its page's address to find its websocket.
+    # viser's client drops the slash from its page's address to find its websocket, but keeps the
+    # name before it: that tells whose client it is.
     @app.websocket("/viewport")
     async def viewport_socket(socket: WebSocket) -> None:
         await relay(socket, viewport)
+
+    @app.websocket("/viewport/{name}")
+    async def named_viewport_socket(socket: WebSocket, name: PageName) -> None:
+        await relay(socket, viewport, name=name)
 
 
 def _explain_invalid(_: Request, error: Exception) -> JSONResponse:

@@ -5,11 +5,12 @@ from typing import Annotated
 
 import tyro
 
-from app.commands.options import Carving, CarvingOptions
+from app.commands.options import Carving, CarvingOptions, OptionalFile
 from app.server import DEFAULT_PORT
 from app.server import serve as serve_source
 from app.source import NO_SOURCE, Source
 from app.sources import demo_source, pass_sources
+from core.formats.meshes import read_mesh
 
 WORKSTATION_CARVING = Carving(spacing_m=0.2)
 """Coarser than the other commands: the hull is meshed anew with every frame that arrives."""
@@ -26,6 +27,7 @@ def serve(
     port: int = DEFAULT_PORT,
     empty: bool = False,
     open: bool = False,  # noqa: A002 - the flag's name on the command line
+    reference: OptionalFile = None,
     carving: CarvingOptions = WORKSTATION_CARVING,
 ) -> None:
     """Serve the workstation on one page of this machine.
@@ -35,6 +37,8 @@ def serve(
         port: port on 127.0.0.1; 0 takes any free one.
         empty: begin without a source; the page loads the demo or a pass file that is dropped on it.
         open: also open the page in the browser.
+        reference: a mesh (GLB, PLY, OBJ, STL) in metres of the target frame, to look at beside
+            the hull; nothing is computed from it.
         carving: how the hull is carved.
     """
     settings = carving.settings()
@@ -45,8 +49,13 @@ def serve(
         )
     if empty and pass_file is not None:
         raise ValueError(f"--empty begins without a source, and {pass_file} is one; leave one out.")
-    source = NO_SOURCE if empty else _source(pass_file)
-    serve_source(source, port=port, open_browser=open, settings=settings)
+    serve_source(
+        NO_SOURCE if empty else _source(pass_file),
+        port=port,
+        open_browser=open,
+        settings=settings,
+        reference=None if reference is None else read_mesh(reference),
+    )
 
 
 def _source(pass_file: Path | None) -> Source:

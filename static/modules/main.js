@@ -13,8 +13,10 @@ import { showSaved } from "./saved-view.js";
 import { Review } from "./review.js";
 import { getJson, keepLinked, send } from "./server.js";
 import { bindShortcuts, fillSheet } from "./shortcuts.js";
+import { Share } from "./share.js";
 import { listenInSpace } from "./space-keys.js";
 import { fewViewsText, showSource } from "./source-view.js";
+import { SpaceView } from "./space-view.js";
 import { Tabs } from "./tabs.js";
 import { Timeline } from "./timeline.js";
 import { Toolbar } from "./toolbar.js";
@@ -125,6 +127,9 @@ const loading = new Loading({
 });
 const exporting = new ExportMenu(part("export-menu"), part("export-note"));
 
+const space = new SpaceView(complain);
+const share = new Share(space, panel, { showFrame, complain });
+
 async function command(method, path, body) {
   try {
     complaint = "";
@@ -175,6 +180,8 @@ function showState(next) {
   transport.update(state);
   timeline.update(state);
   panel.bringOverlays(state.hull?.revision);
+  space.update(state);
+  share.update(state);
   bringFrame();
 }
 
@@ -291,8 +298,7 @@ function showLink(link) {
     newestSerial = -1;
     complaint = "";
     isAnew = true;
-    // viser's client tries again only while its frame has the focus.
-    part("viewport").contentWindow.location.reload();
+    space.reconnect();
   }
   linkWasLost = link === "lost";
   exporting.setLost(linkWasLost);

@@ -446,3 +446,7 @@ def test_the_workstation_does_not_wait_for_all_frames(capsys):
 
 def test_the_workstation_begins_with_a_pass_or_without(capsys):
     assert "begins without a source" in refused(capsys, "serve", "pass.h5", "--empty")
+
+
+def test_a_reference_that_is_no_mesh_is_named_before_anything_starts(capsys, tmp_path) -> None:
+    assert "There is no mesh file" in refused(capsys, "serve", "--reference", tmp_path / "a.stl")

@@ -1,94 +1,16 @@
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from viser.transforms import SO3
+import trimesh
 
+from app.layers import COMPONENT_COLOURS
 from app.snapshot import Record, Snapshot
-from app.viewport import CAMERA_DIRECTION, Viewport, picture_plane
+from app.viewport import Viewport
 from app.viser_server import PrivateViserServer
 from core.analysis.analysis import Analysis
-from core.frame import Frame
-from core.geometry.grid import VoxelGrid
-from core.geometry.projection import Projection
-from core.hull.surface import Surface, mask_surface
-from core.silhouettes.extraction import extract_silhouette
-from core.silhouettes.silhouette import Silhouette
-from tests.app.synthetic import SETTINGS, SPACING_M, frames
-
-
-@dataclass(frozen=True)
-class Drawn:
-    frame: Frame
-    silhouette: Silhouette
-
-
-@pytest.fixture
-def drawn() -> Drawn:
-    frame = next(frames(1))
-    return Drawn(frame, extract_silhouette(frame))
-
-
-def plane_of(drawn, side_m, hull):
-    return picture_plane(drawn.frame, drawn.silhouette, side_m, hull)
-
-
-def ball(radius_m: float) -> Surface:
-    grid = VoxelGrid.cube(side_m=24.0, spacing_m=0.5)
-    return mask_surface(np.linalg.norm(grid.centres_m(), axis=-1) < radius_m, grid)
-
-
-def test_picture_lies_in_the_imaging_plane_with_its_pixels_where_they_image(drawn) -> None:
-    plane = plane_of(drawn, 20.0, None)
-    image_points = drawn.frame.projection.image_points
-    at_centre = image_points(plane.centre_m)
-    middle = [0.5 * (cut.start + cut.stop - 1) for cut in (plane.rows, plane.columns)]
-    np.testing.assert_allclose(at_centre, middle, atol=1e-9)
-    right = image_points(plane.centre_m + plane.right * SPACING_M)
-    down = image_points(plane.centre_m + plane.down * SPACING_M)
-    np.testing.assert_allclose(right - at_centre, [0, 1], atol=1e-9)
-    np.testing.assert_allclose(down - at_centre, [1, 0], atol=1e-9)
-    np.testing.assert_allclose(plane.down, drawn.frame.line_of_sight, atol=1e-9)
-
-
-def test_picture_holds_the_silhouette_and_a_margin(drawn) -> None:
-    plane = plane_of(drawn, 20.0, None)
-    seen = np.concatenate(drawn.silhouette.rings)
-    for cut, places in zip((plane.rows, plane.columns), seen.T, strict=True):
-        assert places.min() - cut.start == pytest.approx(1.5 / SPACING_M, abs=1)
-        assert cut.stop - 1 - places.max() == pytest.approx(1.5 / SPACING_M, abs=1)
-
-
-def test_picture_without_a_silhouette_is_cut_to_the_window(drawn) -> None:
-    nothing = replace(drawn, silhouette=replace(drawn.silhouette, rings=()))
-    plane = plane_of(nothing, 20.0, None)
-    assert plane.width_m == pytest.approx(20.0, abs=2 * SPACING_M)
-    assert plane.height_m == pytest.approx(20.0, abs=2 * SPACING_M)
-    whole = plane_of(nothing, 100.0, None)
-    assert (whole.rows, whole.columns) == (slice(0, 160), slice(0, 160))
-
-
-def test_rotation_carries_right_and_down_and_mirrors_nothing(drawn) -> None:
-    plane = plane_of(drawn, 20.0, None)
-    matrix = SO3(plane.quaternion_wxyz()).as_matrix()
-    np.testing.assert_allclose(matrix[:, 0], plane.right, atol=1e-9)
-    np.testing.assert_allclose(matrix[:, 1], plane.down, atol=1e-9)
-    assert np.linalg.det(matrix) == pytest.approx(1)
-
-
-def test_picture_stands_behind_a_bounded_hull_and_before_an_open_one(drawn) -> None:
-    behind = plane_of(drawn, 24.0, ball(4.0)).aside_m
-    assert behind @ CAMERA_DIRECTION < 0
-    assert 4.0 < np.linalg.norm(behind) < 6.0
-    before = plane_of(drawn, 24.0, ball(30.0)).aside_m
-    assert before @ CAMERA_DIRECTION > 0
-
-
-def test_a_perspective_image_has_no_plane(drawn) -> None:
-    camera = Projection(matrix=np.eye(3, 4) + np.array([[0], [0], [1]]) * [0, 0, 0, 50])
-    seen_so = replace(drawn, frame=replace(drawn.frame, projection=camera))
-    assert plane_of(seen_so, 24.0, None) is None
+from tests.app.synthetic import SETTINGS, frames
 
 
 @pytest.fixture
@@ -116,13 +38,13 @@ def test_an_edit_moves_the_mesh_and_sends_no_picture_again(viewport) -> None:
     for frame in frames(3):
         analysis.receive(frame)
     viewport.show(snapshot_of(analysis))
-    mesh, image = viewport._hull, viewport._picture.image
+    mesh, image = viewport._hull.mesh, viewport._picture.image
     before = mesh.vertices.copy()
     outline = analysis.frame(1).silhouette
     smaller = replace(outline, rings=tuple(0.9 * ring + 8 for ring in outline.rings))
     analysis.commit(1, smaller, tool="scale", base_revision=0)
     viewport.show(snapshot_of(analysis))
-    assert viewport._hull is mesh
+    assert viewport._hull.mesh is mesh
     assert mesh.vertices.shape != before.shape
     np.testing.assert_array_equal(mesh.vertices, analysis.surface.vertices_m.astype(np.float32))
     np.testing.assert_array_equal(mesh.faces, analysis.surface.faces)
@@ -137,8 +59,64 @@ def test_an_empty_hull_is_hidden_and_comes_back(viewport) -> None:
     analysis.set_state(1, "excluded")
     analysis.set_state(2, "excluded")
     viewport.show(snapshot_of(analysis))
-    assert not viewport._hull.visible
+    assert not viewport._hull.mesh.visible
     analysis.set_state(1, "ok")
     viewport.show(snapshot_of(analysis))
-    assert viewport._hull.visible
-    np.testing.assert_array_equal(viewport._hull.faces, analysis.surface.faces)
+    assert viewport._hull.mesh.visible
+    np.testing.assert_array_equal(viewport._hull.mesh.faces, analysis.surface.faces)
+
+
+def analysis_of(count: int) -> Analysis:
+    analysis = Analysis(SETTINGS)
+    for frame in frames(count):
+        analysis.receive(frame)
+    return analysis
+
+
+def test_a_wireframe_is_sent_only_while_somebody_wants_it_and_follows_the_hull(viewport) -> None:
+    analysis = analysis_of(3)
+    viewport.show(snapshot_of(analysis))
+    assert viewport._wireframe.mesh is None
+    viewport.want(frozenset({"hull", "wireframe"}))
+    np.testing.assert_array_equal(viewport._wireframe.mesh.faces, analysis.surface.faces)
+    analysis.set_state(1, "excluded")
+    viewport.show(snapshot_of(analysis))
+    np.testing.assert_array_equal(viewport._wireframe.mesh.faces, analysis.surface.faces)
+    viewport.want(frozenset({"hull"}))
+    assert not viewport._wireframe.mesh.visible
+
+
+def test_uncarved_space_that_nobody_wants_any_more_is_not_shown(viewport) -> None:
+    surface = analysis_of(2).surface
+    viewport.show_uncarved(surface)
+    assert viewport._uncarved.mesh is None
+    viewport.want(frozenset({"uncarved"}))
+    viewport.show_uncarved(surface)
+    assert viewport._uncarved.mesh.visible
+    viewport.want(frozenset())
+    assert not viewport._uncarved.mesh.visible
+
+
+def test_the_hull_has_the_colour_of_the_one_component_that_its_outlines_show(viewport) -> None:
+    analysis = analysis_of(2)
+    viewport.show(snapshot_of(analysis))
+    assert viewport._hull.mesh.color == COMPONENT_COLOURS[0]
+    for number in (1, 2):
+        outline = replace(analysis.frame(number).silhouette, component="panel")
+        analysis.commit(number, outline, tool="name", base_revision=0)
+    viewport.show(snapshot_of(analysis))
+    assert viewport._hull.mesh.color == COMPONENT_COLOURS[1]
+
+
+def test_a_reference_stands_where_its_mesh_does() -> None:
+    server = PrivateViserServer()
+    box = trimesh.creation.box((3.0, 2.0, 1.0))
+    Viewport(server, reference=box)
+    (mesh,) = [
+        m
+        for m in server._websock_server._broadcast_buffer.message_from_id.values()
+        if getattr(m, "name", "") == "/reference/mesh" and hasattr(m, "props")
+    ]
+    np.testing.assert_array_equal(mesh.props.vertices, box.vertices.astype(np.float32))
+    assert mesh.props.opacity < 1
+    server.stop()

@@ -1,5 +1,6 @@
 """A real Chromium, and pages that note what they ask for and complain of."""
 
+import re
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass, field
@@ -64,7 +65,7 @@ def visit(browser: Browser) -> Iterator[Callable[..., Visit]]:
                 ),
             )
             if not viewport:
-                page.route("**/viewport/", lambda route: route.fulfill(body=""))
+                page.route(re.compile(r":\d+/viewport/"), lambda route: route.fulfill(body=""))
             page.goto(address)
             return visit
 

@@ -1,0 +1,141 @@
+"""The viewport's layers and their colours: one table for the scene and for the page's legend."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+Colour = tuple[int, int, int]
+
+WHOLE = "target"
+"""The component that outlines carry unless the analyst names another."""
+
+COMPONENT_COLOURS: tuple[Colour, ...] = (
+    (168, 184, 204),
+    (230, 159, 0),
+    (86, 180, 233),
+    (0, 158, 115),
+    (240, 228, 66),
+    (213, 94, 0),
+    (204, 121, 167),
+    (0, 114, 178),
+)
+"""The whole target's, then those of its components.
+
+Source: Okabe and Ito, "Color universal design", 2008: told apart by colour-blind eyes too.
+"""
+
+OUTLINE_COLOUR: Colour = (64, 224, 208)
+SIGHT_COLOUR: Colour = (240, 140, 20)
+PLANE_COLOUR: Colour = (96, 110, 135)
+WIREFRAME_COLOUR: Colour = (46, 110, 190)
+GRID_COLOUR: Colour = (64, 76, 98)
+UNCARVED_COLOUR: Colour = (86, 180, 233)
+REFERENCE_COLOUR: Colour = (204, 121, 167)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Layer:
+    """A part of the scene that each page shows or hides.
+
+    Attributes:
+        name: of its node in the scene and in links.
+        title: on its button.
+        hint: what it shows.
+        colour: that it has in the scene.
+        is_on: whether a page begins with it.
+    """
+
+    name: str
+    title: str
+    hint: str
+    colour: Colour
+    is_on: bool = True
+
+    @property
+    def node(self) -> str:
+        """The scene's node above all that belongs to it."""
+        return f"/{self.name}"
+
+
+LAYERS = (
+    Layer(name="hull", title="Hull", hint="The hull's surface", colour=COMPONENT_COLOURS[0]),
+    Layer(
+        name="wireframe",
+        title="Wireframe",
+        hint="The edges of the hull's triangles",
+        colour=WIREFRAME_COLOUR,
+        is_on=False,
+    ),
+    Layer(
+        name="picture",
+        title="Frame",
+        hint="The frame on show, in its imaging plane beside the hull",
+        colour=PLANE_COLOUR,
+    ),
+    Layer(
+        name="outline",
+        title="Outline",
+        hint="Its silhouette, on the picture",
+        colour=OUTLINE_COLOUR,
+    ),
+    Layer(
+        name="sights",
+        title="Lines of sight",
+        hint="This frame's line of sight as an arrow, those of all frames as dots",
+        colour=SIGHT_COLOUR,
+    ),
+    Layer(
+        name="grid",
+        title="Grid, axes",
+        hint="Axes of the target frame: x along-track, y cross-track (against the orbit normal), "
+        "z nadir, shown down; below the target a grid of 1 m and 5 m",
+        colour=GRID_COLOUR,
+    ),
+    Layer(
+        name="uncarved",
+        title="Uncarved",
+        hint="Beyond the hull, what only few views have carved away: it would belong to the hull "
+        "if one view in ten, at least one, missed what it should have shown. It follows the kept "
+        "outlines, on a coarser grid",
+        colour=UNCARVED_COLOUR,
+        is_on=False,
+    ),
+    Layer(
+        name="reference",
+        title="Reference",
+        hint="The mesh given with --reference, to look at; nothing is computed from it",
+        colour=REFERENCE_COLOUR,
+        is_on=False,
+    ),
+)
+"""In the order of their buttons."""
+
+FIRST_LAYERS = frozenset(layer.name for layer in LAYERS if layer.is_on)
+
+
+def known_layers(names: Iterable[str]) -> frozenset[str]:
+    """Return the names as a set.
+
+    Raises:
+        ValueError: a name that no layer has.
+    """
+    wanted, known = set(names), {layer.name for layer in LAYERS}
+    if unknown := sorted(wanted - known):
+        raise ValueError(
+            f"There is no layer {', '.join(unknown)}; the layers are {', '.join(sorted(known))}."
+        )
+    return frozenset(wanted)
+
+
+def component_colours(labels: Iterable[str]) -> dict[str, Colour]:
+    """Return a colour for each component, the whole target first; beyond eight they recur."""
+    parts = sorted({WHOLE, *labels}, key=lambda label: (label != WHOLE, label))
+    return {
+        label: COMPONENT_COLOURS[place % len(COMPONENT_COLOURS)]
+        for place, label in enumerate(parts)
+    }
+
+
+def hull_component(labels: Iterable[str]) -> str:
+    """Return the component that a hull of outlines with these labels shows."""
+    distinct = set(labels)
+    return distinct.pop() if len(distinct) == 1 else WHOLE
