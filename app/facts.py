@@ -1,5 +1,6 @@
 """Snapshots and records as the JSON that the page and other programs read."""
 
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -43,6 +44,7 @@ def state_facts(snapshot: Snapshot, source: Source) -> dict[str, Any]:
         "blind": [_vector(blind_direction(record)) for record in snapshot.records],
         "latency_ms": {"last": snapshot.latency_ms},
         "hull": None if snapshot.hull is None else hull_facts(snapshot.hull),
+        "residuals": None if snapshot.residuals is None else asdict(snapshot.residuals),
         "light": None if snapshot.light is None else _light_facts(snapshot.light),
     }
 

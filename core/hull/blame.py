@@ -67,7 +67,7 @@ def _with_votes(volume: VoteCounts, wanted: int, revision: int) -> NDArray[np.in
     """Return the flat places of the voxels with just so many votes, looking at a part at a time."""
     found = []
     layer = int(np.prod(volume.grid.shape[1:]))
-    for first, last in chunks(volume.grid.shape[0]):
+    for first, last in chunks(volume.grid.shape[0], per_thread=32):
         with volume.reading():
             if volume.revision != revision:
                 raise Cancelled("The volume changed while it was read.")
