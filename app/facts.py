@@ -69,6 +69,7 @@ def frame_info(record: Record) -> dict[str, Any]:
         "edited": analysed.history.is_edited,
         "revision": analysed.history.revision,
         "votes": analysed.votes,
+        "held_back": analysed.ballot.view is not None and not analysed.votes,
         "sensor": record.frame.sensor,
     }
 
