@@ -5,11 +5,12 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Locator, Page, Route, expect
 
 from app import idle_work
 from app.source import Source
 from tests.app.synthetic import frames, source
+from tests.browser.test_editing import AXE, serious_violations
 
 COURSE = {
     "passes": [
@@ -92,6 +93,8 @@ def test_one_pass_lacks_views_across_its_plane_and_says_so_everywhere(visit) -> 
         "(nearly y cross-track), marked ×: 90°"
     )
     expect(page.locator("#coverage .worst")).to_have_count(1)
+    page.evaluate(AXE.read_text("utf-8"))
+    assert serious_violations(page) == []
     shade = page.locator("#coverage-shade").evaluate(
         """(canvas) => {
           const at = (x, y) => [...canvas.getContext("2d").getImageData(x, y, 1, 1).data];
@@ -122,6 +125,8 @@ def test_residuals_point_to_a_spoiled_frame_and_frames_are_held_back(visit, monk
     first = page.locator("#residuals tbody tr").first
     top = max(after, key=after.get)
     expect(first).to_have_attribute("data-frame", str(top))
+    page.evaluate(AXE.read_text("utf-8"))
+    assert serious_violations(page) == []
     page.get_by_role("button", name="Suffers, m²").click()
     heads = page.locator("#residuals thead th")
     expect(heads.nth(2)).to_have_attribute("aria-sort", "descending")
@@ -162,6 +167,19 @@ def test_an_empty_hull_names_its_frame_and_is_mended_by_excluding_it(visit) -> N
     expect(page.locator("#hull-empty")).to_contain_text("The hull is empty")
     page.get_by_role("button", name="Exclude frame 3").click()
     expect(page.locator("#hull-body")).to_be_visible()
+    held: list[Route] = []
+
+    def hold(route: Route) -> None:
+        held.append(route)
+
+    page.route("**/api/carving", hold)
+    page.get_by_label("Tolerated misses").fill("1")
+    page.get_by_label("Tolerated misses").press("Enter")
+    expect(page.locator("#hull-body")).to_have_class("stale")
+    held[0].continue_()
+    expect(page.locator("#hull-body")).not_to_have_class("stale")
+    expect(page.locator("#threshold")).to_have_text("inside at least 1 of 2 views")
+    page.unroute("**/api/carving")
     side = page.get_by_label("Grid side, m")
     side.fill("900")
     side.press("Enter")
