@@ -41,6 +41,10 @@ class Host(Protocol):
     def changed(self) -> threading.Condition:
         """Told of every change of the snapshot."""
 
+    @property
+    def edits_asked(self) -> int:
+        """How many edits and previews have been asked for, those under way included."""
+
     def settled(self) -> Settled:
         """Return snapshot and volume as they belong together; waits for a change under way."""
 
@@ -52,7 +56,7 @@ class IdleWork:
     """Does in a thread of its own what is due once a hull has been quiet for a while.
 
     Nothing waits for it: it works on surfaces and outlines that never change, reads votes in parts,
-    and gives up between two frames as soon as there is another hull.
+    and gives up between two frames as soon as an edit is asked for.
     """
 
     def __init__(self, host: Host) -> None:
@@ -61,6 +65,7 @@ class IdleWork:
         self._is_stopping = False
         self._done: set[str] = set()
         self._seen = host.snapshot
+        self._asked = 0
         self._quiet_since_s = time.monotonic()
         self._thread = threading.Thread(target=self._work, name="idle-work", daemon=True)
 
@@ -103,10 +108,14 @@ class IdleWork:
             return None
 
     def _look(self, shown: Snapshot) -> None:
-        """Begin to wait anew where there is another hull, or another status."""
-        if shown.hull is not self._seen.hull or shown.status != self._seen.status:
-            self._quiet_since_s, self._done = time.monotonic(), set()
-        self._seen = shown
+        """Begin to wait anew where there is another hull or status, or somebody asks for one."""
+        is_other = shown.hull is not self._seen.hull or shown.status != self._seen.status
+        asked = self._host.edits_asked
+        if is_other:
+            self._done = set()
+        if is_other or asked != self._asked:
+            self._quiet_since_s = time.monotonic()
+        self._seen, self._asked = shown, asked
 
     def _due(self, shown: Snapshot) -> str | None:
         """Name what is to be done for a hull, None if nothing."""
@@ -133,10 +142,14 @@ class IdleWork:
         if hull is None or surface is None or hull.is_preview:
             return
         outlines = [Outlined(frame=r.frame, silhouette=r.silhouette) for r in snapshot.records]
-        watch = Watch(cancel=lambda: self._is_stopping or self._host.snapshot.hull is not hull)
-        found = hull_residuals(volume, surface, outlines, watch)
+        found = hull_residuals(volume, surface, outlines, Watch(cancel=self._is_disturbed))
         residuals = HullResiduals(revision=hull.revision, frames=found)
         self._host.add_found(snapshot, lambda now: replace(now, residuals=residuals))
+
+    def _is_disturbed(self) -> bool:
+        """Tell whether what is being done is in somebody's way, or of a hull that is no more."""
+        is_asked = self._host.edits_asked != self._asked
+        return self._is_stopping or is_asked or self._host.snapshot.hull is not self._seen.hull
 
 
 def _is_heavy(shown: Snapshot) -> bool:

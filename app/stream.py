@@ -82,6 +82,11 @@ class LiveStream:
         """What is on show now; never waits, so that an event loop may ask."""
         return self._snapshot
 
+    @property
+    def edits_asked(self) -> int:
+        """How many edits and previews have been asked for, those under way included."""
+        return self._ticket
+
     def observe(self, observer: Observer) -> None:
         """Call `observer` with the present snapshot and with every later one."""
         with self._changing():

@@ -46,7 +46,7 @@ export function leastSeen(blind) {
   if (blind.length === 0) return null;
   let worst = null;
   for (let row = -STEPS; row <= STEPS; row += 1) {
-    for (let column = -STEPS; column <= STEPS; column += 1) {
+    for (let column = STEPS; column >= -STEPS; column -= 1) {
       const direction = fromDisc(column / STEPS, row / STEPS);
       if (direction === null) continue;
       const degrees = degreesFromPlanes(direction, blind);

@@ -8,6 +8,7 @@ from app import idle_work
 from app.facts import state_facts
 from app.playback import Playback
 from app.stream import LiveStream
+from core.analysis.analysis import Analysis
 from core.hull.casting import Watch
 from core.measurement.residuals import Outlined, hull_residuals
 from tests.app.synthetic import SETTINGS, source
@@ -18,12 +19,14 @@ from tests.app.test_stream import commit, shifted
 def stream(monkeypatch, wait_for: Callable[..., object]) -> Iterator[LiveStream]:
     """A stream of five frames, all received, in whose quiet idle work begins soon."""
     monkeypatch.setattr(idle_work, "QUIET_S", 0.2)
+    before = set(threading.enumerate())
     stream = LiveStream(source(5), SETTINGS, playback=Playback(speed_hz=None))
     stream.start()
     wait_for(lambda: stream.snapshot.status == "finished")
     yield stream
     stream.stop()
-    assert not any(thread.name == "idle-work" for thread in threading.enumerate())
+    left = set(threading.enumerate()) - before
+    assert not any(thread.name == "idle-work" for thread in left)
 
 
 def test_residuals_come_once_the_hull_is_quiet_and_are_those_of_its_frames(
@@ -84,9 +87,13 @@ def test_an_edit_ends_the_work_on_the_hull_before_and_waits_for_none_of_it(
     monkeypatch.setattr(idle_work, "hull_residuals", endless)
     first = commit(stream, 1, shifted(stream, 1, 1.0), 0)
     assert entered.wait(10)
-    second = commit(stream, 1, shifted(stream, 1, 1.0), 1)
+
+    def waits_for_the_processor(analysis: Analysis) -> None:
+        assert cancelled.wait(10)
+        analysis.undo(1, base_revision=1)
+
+    second = stream.edit(waits_for_the_processor)
     assert second.hull.revision > first.hull.revision
-    assert cancelled.wait(10)
     monkeypatch.undo()
     monkeypatch.setattr(idle_work, "QUIET_S", 0.2)
     wait_for(lambda: stream.snapshot.residuals.revision == second.hull.revision)
