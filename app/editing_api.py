@@ -70,6 +70,9 @@ class CarvingOrder(Body):
     tolerated_misses: int | None = Field(default=None, ge=0, le=1000)
     spacing_m: float | None = Field(default=None, gt=0, le=MOST_SIDE_M)
     side_m: float | None = Field(default=None, gt=0, le=MOST_SIDE_M)
+    frame_range: tuple[int, int | None] | None = Field(
+        default=None, description="First and last frame that vote; the last null for no end."
+    )
 
 
 @router.put("/frames/{number}/silhouette")
@@ -157,7 +160,7 @@ def read_reprojection(number: int, stream: Stream) -> dict[str, Any]:
 
 @router.put("/carving")
 def set_carving(order: CarvingOrder, stream: Stream) -> dict[str, Any]:
-    """Carve by another rule, threshold or grid."""
+    """Carve by another rule, threshold, grid, or by other frames."""
     given = {key: value for key, value in order.model_dump().items() if value is not None}
 
     def change(analysis: Analysis) -> None:

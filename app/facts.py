@@ -1,5 +1,6 @@
 """Snapshots and records as the JSON that the page and other programs read."""
 
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -42,8 +43,11 @@ def state_facts(snapshot: Snapshot, source: Source) -> dict[str, Any]:
         "window_m": snapshot.settings.side_m,
         "carving": carving_facts(snapshot.settings),
         "frames_info": [frame_info(record) for record in snapshot.records],
+        "sights": [_vector(record.frame.line_of_sight) for record in snapshot.records],
+        "blind": [_vector(blind_direction(record)) for record in snapshot.records],
         "latency_ms": {"last": snapshot.latency_ms},
         "hull": None if snapshot.hull is None else hull_facts(snapshot.hull),
+        "residuals": None if snapshot.residuals is None else asdict(snapshot.residuals),
         "light": None if snapshot.light is None else _light_facts(snapshot.light),
     }
 
@@ -55,6 +59,7 @@ def carving_facts(settings: ReconstructionSettings) -> dict[str, Any]:
         "tolerated_misses": settings.tolerated_misses,
         "spacing_m": settings.spacing_m,
         "side_m": settings.side_m,
+        "frame_range": list(settings.frame_range),
     }
 
 
@@ -67,9 +72,15 @@ def frame_info(record: Record) -> dict[str, Any]:
         "edited": analysed.history.is_edited,
         "revision": analysed.history.revision,
         "votes": analysed.votes,
+        "held_back": analysed.ballot.view is not None and not analysed.votes,
         "sensor": record.frame.sensor,
         "component": record.silhouette.component,
     }
+
+
+def blind_direction(record: Record) -> Floats:
+    """Return the (3,) unit direction, target frame, along which a frame measures nothing."""
+    return record.frame.projection.viewing_direction()
 
 
 def hull_facts(hull: Hull) -> dict[str, Any]:
@@ -142,6 +153,7 @@ def _silhouette_facts(record: Record) -> dict[str, Any]:
         "can_undo": history.can_undo,
         "can_redo": history.can_redo,
         "repair": history.present.repair,
+        "vote_repair": record.analysed.vote_repair,
     }
 
 

@@ -8,6 +8,7 @@ from core.analysis.hull import Hull
 from core.frame import Frame
 from core.hull.simplification import Simplified
 from core.hull.surface import Surface
+from core.measurement.residuals import Residual
 from core.reconstruction import ReconstructionSettings
 from core.silhouettes.silhouette import Silhouette
 
@@ -42,6 +43,19 @@ class Record:
         return self.analysed.silhouette
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HullResiduals:
+    """How each frame and a hull disagree.
+
+    Attributes:
+        revision: of that hull, which may not be the present one any more.
+        frames: one per frame that had come, oldest first.
+    """
+
+    revision: int
+    frames: tuple[Residual, ...]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Snapshot:
     """All that observers may show, consistent in itself.
@@ -58,6 +72,7 @@ class Snapshot:
         surface: of that hull, None before the first frame.
         light: the same with fewer faces for the browser to draw once nothing changes it, None
             until then and where the hull has few enough.
+        residuals: of the latest hull that was quiet long enough, None before one.
         chosen: number of the frame that the analyst picked, None to follow the latest.
         latency_ms: from the last edit's arrival until its hull could be shown, None before one.
     """
@@ -72,6 +87,7 @@ class Snapshot:
     hull: Hull | None = None
     surface: Surface | None = None
     light: Simplified | None = None
+    residuals: HullResiduals | None = None
     chosen: int | None = None
     latency_ms: float | None = None
 

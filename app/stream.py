@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 
+from app.idle_work import IdleWork, Settled
 from app.observers import Observer, Observers
 from app.playback import Playback
 from app.snapshot import Record, Snapshot, Status
@@ -14,18 +15,11 @@ from app.source import NO_SOURCE, Source
 from app.tape import Take, Tape
 from core.analysis.analysis import Analysis
 from core.hull.closed_mesh import Surface
-from core.hull.simplification import simplified
 from core.hull.volume import VoteVolume
 from core.reconstruction import ReconstructionSettings
 from core.silhouettes.silhouette import Silhouette
 
 SurfaceOf = Callable[[VoteVolume], Surface]
-
-MOST_IDLE_FACES = 100_000
-"""That a browser without a graphics card still turns smoothly."""
-
-QUIET_S = 3.0
-"""Without an edit, before a large hull is simplified: an analyst at work needs the processors."""
 
 PREVIEW_LASTS_S = 10.0
 """Without news of it; a page that was closed in the middle of a stroke never takes it back."""
@@ -77,6 +71,12 @@ class LiveStream:
             speed_hz=self._playback.speed_hz,
             settings=self._analysis.settings,
         )
+        self._idle_work = IdleWork(self)
+
+    @property
+    def changed(self) -> threading.Condition:
+        """Told of every change of the snapshot."""
+        return self._changed
 
     @property
     def snapshot(self) -> Snapshot:
@@ -88,6 +88,11 @@ class LiveStream:
         """The votes of the kept outlines; to be read only, under its lock."""
         return self._analysis.volume
 
+    @property
+    def edits_asked(self) -> int:
+        """How many edits and previews have been asked for, those under way included."""
+        return self._ticket
+
     def observe(self, observer: Observer) -> None:
         """Call `observer` with the present snapshot and with every later one."""
         with self._changing():
@@ -96,6 +101,7 @@ class LiveStream:
     def start(self) -> None:
         """Start computing and playing."""
         self._thread.start()
+        self._idle_work.start()
 
     def stop(self, timeout_s: float = 5.0) -> None:
         """End the thread; a frame that is being computed may outlast `timeout_s`."""
@@ -106,6 +112,7 @@ class LiveStream:
         if self._preview_end is not None:
             self._preview_end.join(timeout_s)
         self._observers.dismiss(timeout_s)
+        self._idle_work.stop(timeout_s)
         if self._thread.is_alive():
             self._thread.join(timeout_s)
 
@@ -218,6 +225,17 @@ class LiveStream:
         self._observers.call()
         return snapshot
 
+    def settled(self) -> Settled:
+        """Return snapshot and votes as they belong together; waits for a change under way."""
+        with self._working:
+            return Settled(snapshot=self._snapshot, volume=self._analysis.volume)
+
+    def add_found(self, seen: Snapshot, add: Callable[[Snapshot], Snapshot]) -> None:
+        """Show what was found of the hull of the snapshot `seen`, unless there is another now."""
+        with self._changing():
+            if self._snapshot.hull is seen.hull:
+                self._publish(add(self._snapshot))
+
     def choose(self, number: int | None) -> None:
         """Show frame `number` (from 1) while the hull stays the latest; None follows the latest.
 
@@ -281,8 +299,6 @@ class LiveStream:
         if not self.snapshot.records and not self._is_over(run):
             raise ValueError(f"{self.source.name} holds no frames, so there is nothing to carve.")
         self._end(run, "finished")
-        # Seconds of work for half a million faces; the whole hull is on show meanwhile.
-        self._lighten(run)
 
     def _is_released(self, run: int) -> bool:
         """Wait until playback lets the next frame appear; tell whether the run goes on."""
@@ -339,21 +355,6 @@ class LiveStream:
         if self._preview_end is not None:
             self._preview_end.cancel()
 
-    def _lighten(self, run: int) -> None:
-        """Give the browser fewer faces to draw, now that nothing changes them."""
-        surface = self.snapshot.surface
-        if surface is None or not self._is_heavy():
-            return
-        light = simplified(surface, most_faces=MOST_IDLE_FACES)
-        with self._changing():
-            if not self._is_over(run) and self._snapshot.surface is surface:
-                self._publish(replace(self._snapshot, light=light))
-
-    def _is_heavy(self) -> bool:
-        shown = self._snapshot
-        is_large = shown.surface is not None and len(shown.surface.faces) > MOST_IDLE_FACES
-        return is_large and shown.light is None
-
     def _end(self, run: int, status: Status, message: str = "") -> None:
         with self._changing():
             if not self._is_over(run):
@@ -363,21 +364,8 @@ class LiveStream:
         return self._stopping or self._snapshot.run != run
 
     def _wait_for_restart(self, run: int) -> None:
-        while not self._is_over(run):
-            if self._is_quiet(run):
-                self._lighten(run)
-
-    def _is_quiet(self, run: int) -> bool:
-        """Wait for a large hull, or for news of it; tell whether it has stayed for a while."""
         with self._changed:
-            while not self._is_over(run) and not self._is_heavy():
-                self._changed.wait()
-            surface, until_s = self._snapshot.surface, time.monotonic() + QUIET_S
-            while not self._is_over(run) and self._snapshot.surface is surface:
-                if (left_s := until_s - time.monotonic()) <= 0:
-                    return True
-                self._changed.wait(left_s)
-            return False
+            self._changed.wait_for(lambda: self._is_over(run))
 
     def _new_tape(self) -> Tape:
         return Tape(self.source.frames, self._analysis.settings.extraction)

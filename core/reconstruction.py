@@ -22,6 +22,9 @@ from core.silhouettes.silhouette import Silhouette
 CONTRADICTS = "has a silhouette that contradicts the others"
 """Why a frame that registration by agreement found to be wrong does not vote."""
 
+OUT_OF_RANGE = "lies outside the range of frames that vote"
+"""Why a frame before the first or after the last that the settings ask for does not vote."""
+
 LINE_NAMES = ("span", "length", "diameter")
 """Of the principal lines, longest first, as they are called on a laboratory with solar panels."""
 
@@ -43,6 +46,8 @@ class ReconstructionSettings:
         extraction: how silhouettes are taken from frames.
         most_phase_rad: sunlit outlines vote up to this angle at the target between the sun and
             the observer; π lets all vote.
+        frame_range: numbers of the first and the last frame that may vote, from 1; None for the
+            last lets all vote that come from the first on.
     """
 
     spacing_m: float = 0.15
@@ -52,13 +57,25 @@ class ReconstructionSettings:
     registration: RegistrationRule = "none"
     extraction: ExtractionSettings = field(default_factory=ExtractionSettings)
     most_phase_rad: float = MOST_PHASE_RAD
+    frame_range: tuple[int, int | None] = (1, None)
 
     def __post_init__(self) -> None:
         if self.tolerated_misses < 0:
             raise ValueError(
                 f"Tolerated misses are a number of views, 0 or more; got {self.tolerated_misses}."
             )
+        first, last = self.frame_range
+        if first < 1 or (last is not None and last < first):
+            raise ValueError(
+                "The range of frames that vote runs from a first frame, 1 or later, to a last one "
+                f"that is not before it; got {first} to {last}."
+            )
         check_storable(self.grid())
+
+    def lets_vote(self, number: int) -> bool:
+        """Tell whether frame `number`, from 1, lies in the range of frames that vote."""
+        first, last = self.frame_range
+        return number >= first and (last is None or number <= last)
 
     def grid(self) -> VoxelGrid:
         """Return the grid on which views vote.
@@ -126,6 +143,8 @@ def reconstruct(
     views: list[View] = []
     for number, outline in enumerate(_outlines(frames, settings), start=1):
         ballot = outline.ballot(settings)
+        if not settings.lets_vote(number):
+            ballot = replace(ballot, view=None, unfit=ballot.unfit or OUT_OF_RANGE)
         if ballot.view is not None:
             views.append(ballot.view)
             volume.add(ballot.view)

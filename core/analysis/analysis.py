@@ -133,6 +133,7 @@ class Analysis:
             history=history,
             state=state,
             ballot=ballot_of(frame, history.present.silhouette, self._settings),
+            is_in_range=self._settings.lets_vote(number),
         )
         self._adopt([*self._frames, received])
         return received
@@ -205,6 +206,8 @@ class Analysis:
     def set_state(self, number: int, state: ReviewState) -> AnalysedFrame:
         """Say how far the analyst is with a frame; an excluded one does not vote.
 
+        The hull keeps its revision where the same frames vote as before.
+
         Raises:
             ValueError: there is no such frame, or no such state.
         """
@@ -212,8 +215,13 @@ class Analysis:
             raise ValueError(
                 f'A frame is {", ".join(get_args(ReviewState))}; it cannot be "{state}".'
             )
-        self._adopt(self._with(replace(self.frame(number), state=state)))
-        return self.frame(number)
+        before = self.frame(number)
+        after = replace(before, state=state)
+        if after.votes == before.votes and not self._is_preview:
+            self._frames = self._with(after)
+        else:
+            self._adopt(self._with(after))
+        return after
 
     def extract_again(
         self, extraction: ExtractionSettings, *, overwrites_edited: bool = False
@@ -238,18 +246,17 @@ class Analysis:
         )
 
     def set_carving(self, settings: ReconstructionSettings) -> None:
-        """Carve by other settings: threshold, rule, grid.
+        """Carve by other settings: threshold, rule, grid, which frames vote.
 
         Raises:
             ValueError: a grid too large, or one within which a camera stands.
         """
-        if replace(self._settings, tolerated_misses=settings.tolerated_misses) == settings:
+        frames = [replace(f, is_in_range=settings.lets_vote(f.number)) for f in self._frames]
+        if _count_alike(self._settings, settings):
             self._settings = settings
-            self._adopt(self._frames)
+            self._adopt(frames)
             return
-        frames = [
-            replace(f, ballot=ballot_of(f.received, f.silhouette, settings)) for f in self._frames
-        ]
+        frames = [replace(f, ballot=ballot_of(f.received, f.silhouette, settings)) for f in frames]
         volume = VoteVolume(_grid(settings))
         _carve(volume, frames, settings)
         self._settings, self._volume, self._frames = settings, volume, frames
@@ -332,6 +339,12 @@ def _carve(
     places = [frame.place for frame in frames]
     voting = sum(place.votes for place in places)
     bring_in_step(volume, places, vote_threshold(voting, settings))
+
+
+def _count_alike(one: ReconstructionSettings, other: ReconstructionSettings) -> bool:
+    """Tell whether each frame's votes are the same, whichever frames vote and how many it takes."""
+    misses, frames = other.tolerated_misses, other.frame_range
+    return replace(one, tolerated_misses=misses, frame_range=frames) == other
 
 
 def _grid(settings: ReconstructionSettings) -> VoxelGrid:

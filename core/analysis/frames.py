@@ -6,7 +6,8 @@ from typing import Literal
 from core.analysis.history import History
 from core.analysis.polling import Place
 from core.frame import Frame
-from core.reconstruction import Ballot, not_voting_note
+from core.hull.outline import outline_of
+from core.reconstruction import OUT_OF_RANGE, Ballot, not_voting_note
 from core.silhouettes.silhouette import Silhouette
 
 ReviewState = Literal["todo", "ok", "fix", "excluded"]
@@ -23,6 +24,7 @@ class AnalysedFrame:
         history: of its outline.
         state: how far the analyst is with it.
         ballot: how it votes by its present outline.
+        is_in_range: whether it is one of the frames that the settings let vote.
     """
 
     number: int
@@ -30,6 +32,7 @@ class AnalysedFrame:
     history: History
     state: ReviewState
     ballot: Ballot
+    is_in_range: bool = True
 
     @property
     def frame(self) -> Frame:
@@ -49,10 +52,21 @@ class AnalysedFrame:
     @property
     def place(self) -> Place:
         """Its place in a volume."""
-        return Place.of(self.ballot.view, is_excluded=self.state == "excluded")
+        return Place.of(self.ballot.view, is_excluded=bool(self._held_back))
 
     @property
     def note(self) -> str:
         """What a person should know of it, empty if nothing."""
-        excluded = "is excluded" if self.state == "excluded" else ""
-        return not_voting_note(self.number, self.ballot.unfit or excluded)
+        return not_voting_note(self.number, self.ballot.unfit or self._held_back)
+
+    @property
+    def vote_repair(self) -> str:
+        """What had to be repaired in its outline for it to vote, empty when nothing was."""
+        return "" if self.ballot.view is None else outline_of(self.ballot.view.silhouette).repair
+
+    @property
+    def _held_back(self) -> str:
+        """Why a frame that could vote is not let, empty if it is."""
+        if self.state == "excluded":
+            return "is excluded"
+        return "" if self.is_in_range else OUT_OF_RANGE

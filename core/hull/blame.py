@@ -6,9 +6,9 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from core.hull.casting import cast
-from core.hull.threads import Compiled
-from core.hull.votes import VoteCounts
+from core.hull.casting import UNWATCHED, Cancelled, Watch, cast
+from core.hull.threads import Compiled, chunks
+from core.hull.votes import VoteCounts, Voter
 
 
 def removed_alone_m3(volume: VoteCounts) -> dict[int, float]:
@@ -28,6 +28,62 @@ def removed_alone_m3(volume: VoteCounts) -> dict[int, float]:
         number: float(count) * voxel_m3
         for (number, _), count in zip(voters, counts[1:], strict=True)
     }
+
+
+def gained_without_m3(volume: VoteCounts, watch: Watch = UNWATCHED) -> dict[int, float]:
+    """Return for each voting view by how much, in m³, the hull would grow if it did not vote.
+
+    Where all votes are needed that is what the view alone removes. Where misses are tolerated, as
+    many are tolerated without it, and it is what would then come back; nothing where a single vote
+    is enough. Nobody who changes the volume waits longer than for a look at a part of its votes.
+
+    Args:
+        volume: that votes.
+        watch: is told the views done, and may cancel.
+
+    Raises:
+        Cancelled: `watch` said so, or the volume changed meanwhile.
+    """
+    with volume.reading():
+        if volume.view_count == 0:
+            return {}
+        voters = {number: voter for number, voter in volume.voters.items() if voter.votes}
+        wanted, revision = volume.checked_threshold(volume.threshold) - 1, volume.revision
+    if wanted == 0:
+        return dict.fromkeys(voters, 0.0)
+    lacking = _with_votes(volume, wanted, revision)
+    own = np.zeros(volume.grid.shape, dtype=np.uint8)
+    gained = {}
+    for done, (number, voter) in enumerate(voters.items()):
+        if watch.cancel():
+            raise Cancelled(f"Cancelled after {done} of {len(voters)} views.")
+        missed = _missed_count(own, voter, lacking, watch)
+        gained[number] = missed * volume.grid.spacing_m**3
+        watch.progress(done + 1, len(voters))
+    return gained
+
+
+def _with_votes(volume: VoteCounts, wanted: int, revision: int) -> NDArray[np.int64]:
+    """Return the flat places of the voxels with just so many votes, looking at a part at a time."""
+    found = []
+    layer = int(np.prod(volume.grid.shape[1:]))
+    for first, last in chunks(volume.grid.shape[0], per_thread=32):
+        with volume.reading():
+            if volume.revision != revision:
+                raise Cancelled("The volume changed while it was read.")
+            places = np.flatnonzero(volume.votes[first:last] == wanted)
+        found.append(places + first * layer)
+    return np.concatenate(found)
+
+
+def _missed_count(
+    own: NDArray[np.uint8], voter: Voter, places: NDArray[np.int64], watch: Watch
+) -> int:
+    """Count the voxels that a view misses, on a grid of zeros that it leaves as it was."""
+    cast(own, [voter.pulled_back(1)], [voter.axis], watch=watch)
+    missed = len(places) - int(np.count_nonzero(own.ravel().take(places)))
+    own.fill(0)
+    return missed
 
 
 @numba.njit(**Compiled)  # type: ignore[untyped-decorator]

@@ -111,7 +111,9 @@ class SurfaceMesher:
             return [ChangedEdges.of(cells, new.to_image)]
         changes = []
         if old:
-            changes.append(ChangedEdges.of(self._cells[number], old.to_image))
+            # Not at hand where the view's last change touched no slab.
+            cells = self._cells[number] if number in self._cells else cells_of(old, self._grid)
+            changes.append(ChangedEdges.of(cells, old.to_image))
         if new:
             changes.append(ChangedEdges.of(cells_of(new, self._grid), new.to_image))
         return changes

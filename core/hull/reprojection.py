@@ -2,13 +2,16 @@
 
 import numba
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from core.arrays import Floats
 from core.geometry.projection import Projection
 from core.hull.surface import Surface
 from core.hull.threads import Compiled
+from core.silhouettes.areas import area_of
 from core.silhouettes.contours import traced_rings
+from core.silhouettes.silhouette import Silhouette
 
 
 def reprojected_mask(
@@ -38,20 +41,59 @@ def reprojected_rings(
     Raises:
         ValueError: a raster that is not 1 to 8 times finer.
     """
+    return _rings_within(surface, projection, np.zeros(2, dtype=int), image_shape, finer)
+
+
+def uncovered_area_px(
+    surface: Surface, projection: Projection, silhouette: Silhouette, *, finer: int = 4
+) -> float:
+    """Return how much of a silhouette's area, in square pixels, a surface's image leaves open.
+
+    Where the surface reaches past the silhouette does not matter: a lit side may be smaller than
+    the target.
+
+    Args:
+        surface: of the hull.
+        projection: of the frame.
+        silhouette: as drawn in the frame.
+        finer: how many times finer than the image's the raster of the surface's image is.
+
+    Raises:
+        ValueError: a raster that is not 1 to 8 times finer.
+    """
+    if silhouette.is_empty:
+        return 0.0
+    points = np.concatenate(silhouette.rings)
+    first = np.floor(points.min(axis=0)).astype(int)
+    rows, columns = np.ceil(points.max(axis=0)).astype(int) + 1 - first
+    rings = _rings_within(surface, projection, first, (int(rows), int(columns)), finer)
+    drawn = area_of(silhouette.rings)
+    return float(shapely.area(shapely.difference(drawn, area_of(rings))))
+
+
+def _rings_within(
+    surface: Surface,
+    projection: Projection,
+    first: NDArray[np.int_],
+    shape: tuple[int, int],
+    finer: int,
+) -> tuple[Floats, ...]:
+    """Trace the surface's image on the part of the image that begins at the pixel `first`."""
     if not 1 <= finer <= 8:
         raise ValueError(f"The raster may be 1 to 8 times finer than the image, not {finer}.")
     # Pixel centres at integers: (finer − 1) / 2 is the fine raster's place of the coarse origin.
-    shift = (finer - 1) / 2
+    centre = (finer - 1) / 2
+    shift = centre - finer * first
     matrix = projection.matrix.copy()
     if projection.is_affine:
         matrix[:2] *= finer
         matrix[:2, 3] += shift
     else:
-        matrix[:2] = finer * matrix[:2] + shift * matrix[2]
-    fine_shape = (finer * image_shape[0], finer * image_shape[1])
+        matrix[:2] = finer * matrix[:2] + np.outer(shift, matrix[2])
+    fine_shape = (finer * shape[0], finer * shape[1])
     mask = reprojected_mask(surface, Projection(matrix=matrix), fine_shape)
     rings = traced_rings(mask.astype(np.float32), 0.5, simplification_px=0.3)
-    return tuple((ring - shift) / finer for ring in rings)
+    return tuple((ring - centre) / finer + first for ring in rings)
 
 
 @numba.njit(**Compiled)  # type: ignore[untyped-decorator]

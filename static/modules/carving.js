@@ -5,33 +5,61 @@ import { fixed } from "./numbers.js";
 export class Carving {
   #parts;
   #hooks;
+  #carving = null;
 
-  /** `hooks.set(changes)`, `hooks.exclude(numbers)`, `hooks.go(number)`. */
+  /** `hooks.set(changes)` gives a promise, `hooks.exclude(numbers)`, `hooks.go(number)`. */
   constructor(parts, hooks) {
     this.#parts = parts;
     this.#hooks = hooks;
-    const { rule, misses, spacing } = parts;
-    rule.addEventListener("change", () => hooks.set({ rule: rule.value }));
-    misses.addEventListener("change", () => {
-      if (isValid(misses)) hooks.set({ tolerated_misses: Number(misses.value) });
+    const { rule, misses, spacing, side, first, last } = parts;
+    const listen = (field, changes) => field.addEventListener("change", () => {
+      if (isValid(field)) this.#set(changes());
     });
-    spacing.addEventListener("change", () => {
-      if (isValid(spacing)) hooks.set({ spacing_m: Number(spacing.value) / 100 });
-    });
+    listen(rule, () => ({ rule: rule.value }));
+    listen(misses, () => ({ tolerated_misses: Number(misses.value) }));
+    listen(spacing, () => ({ spacing_m: Number(spacing.value) / 100 }));
+    listen(side, () => ({ side_m: Number(side.value) }));
+    const range = () => ({ frame_range: [Number(first.value), Number(last.value) || null] });
+    listen(first, range);
+    listen(last, range);
   }
 
   update({ carving, hull }) {
-    const { form, rule, misses, spacing, preview, threshold, revision } = this.#parts;
+    const { form, preview, threshold, revision, hullRevision } = this.#parts;
     form.hidden = !carving;
-    if (carving) {
-      fill(rule, carving.rule);
-      fill(misses, String(carving.tolerated_misses));
-      fill(spacing, String(Number((100 * carving.spacing_m).toFixed(2))));
-    }
+    this.#carving = carving ?? null;
+    if (carving) this.#fill(fill);
     preview.hidden = !hull?.is_preview;
     revision.textContent = hull?.revision === undefined ? "" : `rev ${hull.revision}`;
+    hullRevision.textContent = revision.textContent;
     threshold.textContent = hull?.threshold === undefined ? "" : thresholdText(hull);
     this.#updateEmptied(hull);
+  }
+
+  /** Ask the server; what it refuses is said here, and the fields go back to what holds. */
+  async #set(changes) {
+    const { complaint } = this.#parts;
+    try {
+      complaint.hidden = true;
+      await this.#hooks.set(changes);
+    } catch (error) {
+      complaint.textContent = error.message;
+      complaint.hidden = false;
+      this.#fill((field, value) => {
+        field.value = value;
+      });
+    }
+  }
+
+  #fill(put) {
+    const { rule, misses, spacing, side, first, last } = this.#parts;
+    const { frame_range: [from, to] = [1, null], ...carving } = this.#carving;
+    put(rule, carving.rule);
+    put(misses, String(carving.tolerated_misses));
+    put(spacing, String(Number((100 * carving.spacing_m).toFixed(2))));
+    put(side, String(Number(carving.side_m.toFixed(2))));
+    put(first, String(from));
+    put(last, to === null ? "" : String(to));
   }
 
   #updateEmptied(hull) {
@@ -81,5 +109,5 @@ function fill(field, value) {
 
 /** A field holds what it may; if not, the browser says what. */
 function isValid(field) {
-  return field.reportValidity() && field.value !== "";
+  return field.reportValidity() && (field.value !== "" || !field.required);
 }

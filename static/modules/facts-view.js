@@ -1,5 +1,6 @@
 // What is known of the frame and of the hull, in words and numbers.
 
+import { leastSeen, nearestAxis } from "./directions.js";
 import { count, fixed, frames, timeText, vector, withUnit } from "./numbers.js";
 
 /** The rows that describe a frame. */
@@ -15,9 +16,24 @@ export function frameRows(frame) {
         : `range ${withUnit(frame.row_resolution_m, 2, "m")}, ` +
           `cross-range ${withUnit(frame.column_resolution_m, 2, "m")}`,
     ],
+    ["Interval", intervalText(frame.interval)],
     ["Silhouette", silhouetteText(frame)],
     ["Found by", frame.silhouette.provenance || "unknown"],
-  ];
+    ["Repaired", [frame.silhouette.repair, frame.silhouette.vote_repair].filter(Boolean).join(" ")],
+  ].filter(([, text]) => text);
+}
+
+/** "shortened to 3.1° in 14.2 s, 512 pulses: the Doppler would bend by …"; empty where none is known. */
+function intervalText(interval) {
+  if (!interval) return "";
+  const { verdict, reason, start_s: start, stop_s: stop, turn_deg: turn, pulses } = interval;
+  const size = [
+    turn != null && `${fixed(turn, 1)}°`,
+    start != null && stop != null && withUnit(stop - start, 1, "s"),
+    pulses != null && `${count(pulses)} pulses`,
+  ].filter(Boolean).join(", ");
+  const why = verdict === "accepted" || !reason ? "" : `: ${reason}`;
+  return `${[verdict, size].filter(Boolean).join(", ")}${why}`;
 }
 
 function silhouetteText(frame) {
@@ -102,15 +118,30 @@ export function showNote(place, note) {
   place.textContent = note && `${note[0].toUpperCase()}${note.slice(1)}.`;
 }
 
-/** Name the direction that no frame constrains, if there is one. */
-export function showUnobserved(note, direction) {
-  note.hidden = direction === null;
-  if (direction === null) return;
+/** Name the direction that lacks views, where the hull is open. */
+export function showUnobserved(note, hull, { blind = [], frames_info: infos = [] }) {
+  const isOpen = hull.extents.some((extent) => !extent.is_bounded);
+  note.hidden = hull.unobserved === null && !isOpen;
+  if (note.hidden) return;
+  if (hull.unobserved !== null) {
+    note.replaceChildren(
+      element("b", `No view constrains the direction ${named(hull.unobserved)}.`),
+      "All lines of sight so far turn in nearly one plane; along this direction (x, y, z) the " +
+        "hull is not measured.",
+    );
+    return;
+  }
+  const worst = leastSeen(blind.filter((_, index) => infos[index]?.votes));
   note.replaceChildren(
-    element("b", `Unobserved: ${vector(direction)}`),
-    "All lines of sight so far turn in nearly one plane; along this direction (x, y, z) the hull " +
-      "is not measured.",
+    element("b", "The hull reaches the side of the grid: the views do not close it."),
+    worst === null ? "" : `Views lack most along ${named(worst.direction)}, ` +
+      `${fixed(worst.degrees, 0)}° from the nearest image plane.`,
   );
+}
+
+/** "0.02, −0.98, 0.21 (nearly y cross-track)". */
+function named(direction) {
+  return `${vector(direction)} (${nearestAxis(direction)})`;
 }
 
 /** "after 12 frames". */

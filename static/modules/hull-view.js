@@ -18,7 +18,7 @@ export function showHull(state) {
   const waiting = state.status === "failed" ? "No frame arrived." : "Preparing the first frame…";
   part("hull-body").hidden = hull === null || hull.is_empty;
   part("hull-empty").hidden = hull !== null && !hull.is_empty;
-  part("hull-empty").textContent = noHullText(hull);
+  part("hull-empty").textContent = noHullText(hull, state.frames_info ?? []);
   part("hull-stamp").textContent = hull === null ? "" : afterFrames(hull.frames);
   part("space-empty").hidden = hull !== null;
   part("space-empty").textContent = waiting;
@@ -31,12 +31,15 @@ export function showHull(state) {
   showExtents(part("extents"), hull.extents);
   showLines(part("lines"), hull.lines);
   part("lines-empty").hidden = hull.lines.length > 0;
-  showUnobserved(part("unobserved"), hull.unobserved);
+  showUnobserved(part("unobserved"), hull, state);
   showRows(part("hull-facts"), hullRows(hull, state.light, state.latency_ms?.last ?? null));
 }
 
-function noHullText(hull) {
+function noHullText(hull, infos) {
   if (hull === null) return "The hull appears with the first frame.";
+  if (hull.views === 0 && infos.some((info) => info.held_back)) {
+    return "There is no hull: no frame votes. Take frames back in, or let a wider range of them vote.";
+  }
   if (hull.views === 0) return "There is no hull: no frame so far shows the target.";
   return "The hull is empty: no point of the target lies inside every silhouette.";
 }

@@ -12,6 +12,7 @@ import { Proposals } from "./proposals.js";
 import { showSaved } from "./saved-view.js";
 import { Review } from "./review.js";
 import { getJson, keepLinked, send } from "./server.js";
+import { RightPane } from "./right-pane.js";
 import { bindShortcuts, fillSheet } from "./shortcuts.js";
 import { Share } from "./share.js";
 import { listenInSpace } from "./space-keys.js";
@@ -38,6 +39,7 @@ const tabs = new Tabs(document.querySelectorAll("[role=tab]"));
 const banner = new Banner(part("banner"));
 const panel = new FramePanel(showEditing, complain);
 const { session, view, scene } = panel;
+const rightPane = new RightPane({ go: showFrame });
 const editor = new Editor(part("frame-canvas"), view, session, scene, {
   redraw: () => panel.redraw(),
   complain,
@@ -83,13 +85,18 @@ const carving = new Carving(
     rule: part("carving-rule"),
     misses: part("carving-misses"),
     spacing: part("carving-spacing"),
+    side: part("carving-side"),
+    first: part("carving-first"),
+    last: part("carving-last"),
+    complaint: part("carving-complaint"),
+    hullRevision: part("hull-revision"),
     preview: part("preview-chip"),
     threshold: part("threshold"),
     revision: part("revision"),
     emptied: part("emptied"),
   },
   {
-    set: (changes) => command("PUT", "/api/carving", changes),
+    set: (changes) => rightPane.greyUntil(send("PUT", "/api/carving", changes).then(showState)),
     exclude: excludeAll,
     go: showFrame,
   },
@@ -176,6 +183,7 @@ function showState(next) {
   loading.update(state);
   exporting.update(state);
   carving.update(state);
+  rightPane.update(state);
   review.update(state);
   transport.update(state);
   timeline.update(state);
@@ -236,6 +244,7 @@ async function fetchFrame(key) {
 
 function showEditing() {
   toolbar?.update();
+  rightPane.greyWhile(session.isSaving);
   showBanner();
   showSaved(session, linkWasLost);
   // News that came while somebody was drawing has waited.

@@ -88,6 +88,11 @@ def carve(**change):
     )
 
 
+def set_range(of, number, random):
+    chosen = [(1, None), (2, None), (number, number), (1, 4)][random.integers(4)]
+    of.set_carving(replace(of.settings, frame_range=chosen))
+
+
 OPERATIONS = {
     "drag": drag,
     "move": lambda of, n, random: commit(of, n, moved(OUTLINES[0], random.normal(size=2))),
@@ -98,6 +103,7 @@ OPERATIONS = {
     "misses": carve(tolerated_misses=[0, 1, 2]),
     "rule": carve(rule=["shadow", "strict"]),
     "grid": carve(spacing_m=[0.8, 1.1]),
+    "range": set_range,
     "preview": preview,
     "end preview": lambda of, n, random: of.end_preview(),
     "receive": lambda of, n, random: of.receive(FRAMES[len(of.frames) % 6]),
@@ -122,9 +128,11 @@ def test_the_hull_equals_the_one_from_scratch_after_any_operations(seed, operati
     assert_same_hull(of, from_scratch(of))
 
 
-def test_an_analysis_without_edits_is_the_reconstruction():
-    growing = Analysis(SETTINGS)
-    for step, frame in zip(reconstruct(FRAMES, SETTINGS), FRAMES, strict=True):
+@pytest.mark.parametrize("frame_range", [(1, None), (2, 4)])
+def test_an_analysis_without_edits_is_the_reconstruction(frame_range):
+    chosen = replace(SETTINGS, frame_range=frame_range)
+    growing = Analysis(chosen)
+    for step, frame in zip(reconstruct(FRAMES, chosen), FRAMES, strict=True):
         received = growing.receive(frame)
         hull = growing.hull
         assert np.array_equal(growing.surface.vertices_m, step.surface.vertices_m)
@@ -202,6 +210,35 @@ def test_an_excluded_frame_does_not_vote_and_says_so():
     assert of.set_state(2, "fix").votes
     with pytest.raises(ValueError, match='todo, ok, fix, excluded; it cannot be "done"'):
         of.set_state(2, "done")
+
+
+def test_frames_outside_the_range_keep_their_place_and_do_not_vote():
+    of = analysis()
+    whole = of.hull
+    of.set_carving(replace(COARSE, frame_range=(2, 4)))
+    assert [frame.votes for frame in of.frames] == [False, True, True, True, False, False]
+    assert of.frame(1).note == (
+        "frame 1 lies outside the range of frames that vote and does not vote"
+    )
+    assert of.frame(6).note == "frame 6 shows no target and does not vote"
+    assert (of.hull.voting, of.hull.threshold) == (3, 3)
+    assert of.hull.volume_m3 > whole.volume_m3
+    of.set_carving(COARSE)
+    assert of.hull.volume_m3 == whole.volume_m3
+    with pytest.raises(ValueError, match="a last one that is not before it; got 3 to 2"):
+        replace(COARSE, frame_range=(3, 2))
+
+
+def test_a_review_state_that_changes_no_vote_leaves_the_hull_as_it_is():
+    of = analysis(count=3)
+    before = of.hull
+    assert of.set_state(2, "ok").state == of.frame(2).state == "ok"
+    assert of.hull is before
+    of.preview(2, moved(OUTLINES[1], 5.0), base_revision=0)
+    of.set_state(2, "fix")
+    assert not of.hull.is_preview
+    assert of.set_state(2, "excluded").votes is False
+    assert of.hull.revision > before.revision
 
 
 def test_an_outline_that_cannot_vote_changes_nothing():

@@ -18,6 +18,16 @@ def test_state_describes_the_source_and_the_hull(client: Client) -> None:
     assert state["hull"]["vertices"] > 100
 
 
+def test_the_state_tells_where_each_frame_looks_and_where_it_is_blind(client: Client) -> None:
+    state = client.get("/api/state").json()
+    truth = list(frames(4))
+    np.testing.assert_allclose(state["sights"], [frame.line_of_sight for frame in truth])
+    blind = np.array(state["blind"])
+    np.testing.assert_allclose(np.linalg.norm(blind, axis=1), 1)
+    for direction, frame in zip(blind, truth, strict=True):
+        np.testing.assert_allclose(frame.projection.matrix[:, :3] @ direction, 0, atol=1e-12)
+
+
 def test_a_frame_tells_its_circumstances(client: Client) -> None:
     frame = client.get("/api/frames/2").json()
     truth = list(frames(4))[1]
@@ -30,6 +40,7 @@ def test_a_frame_tells_its_circumstances(client: Client) -> None:
     np.testing.assert_allclose([*k, np.sin(elevation)], truth.line_of_sight, atol=1e-12)
     assert frame["silhouette"]["rings"]
     assert frame["hull"]["frames"] == 2
+    assert frame["silhouette"]["vote_repair"] == ""
 
 
 def test_an_unbounded_extent_has_no_number(client: Client) -> None:

@@ -140,7 +140,13 @@ def test_an_empty_hull_names_the_frames_that_emptied_it(page) -> None:
 
 def test_carving_follows_its_controls(page) -> None:
     before = state(page)
-    asked = {"tolerated_misses": 1, "rule": "strict", "spacing_m": 0.5, "side_m": 25.0}
+    asked = {
+        "tolerated_misses": 1,
+        "rule": "strict",
+        "spacing_m": 0.5,
+        "side_m": 25.0,
+        "frame_range": [1, None],
+    }
     shown = page.put("/api/carving", json=asked).json()
     assert shown["carving"] == asked
     assert shown["window_m"] == 25.0
@@ -149,6 +155,13 @@ def test_carving_follows_its_controls(page) -> None:
     assert too_fine.status_code == 422
     assert "833 voxels a side; at most 640" in too_fine.json()["detail"]
     assert state(page)["carving"] == asked
+    fewer = page.put("/api/carving", json={"frame_range": [2, 3]}).json()
+    assert fewer["hull"]["views"] == 2
+    assert [info["votes"] for info in fewer["frames_info"]] == [False, True, True, False]
+    assert "outside the range" in page.get("/api/frames/4").json()["note"]
+    backward = page.put("/api/carving", json={"frame_range": [3, 2]})
+    assert (backward.status_code, state(page)["carving"]) == (422, fewer["carving"])
+    assert "not before it; got 3 to 2" in backward.json()["detail"]
     back = page.put("/api/carving", json=before["carving"]).json()
     assert back["hull"]["volume_m3"] == before["hull"]["volume_m3"]
 
@@ -224,7 +237,9 @@ def test_tools_propose_and_change_nothing(page) -> None:
     assert len(copied["rings"]) == len(page.get("/api/frames/3").json()["silhouette"]["rings"])
     seen = page.get("/api/frames/2/reprojection").json()["rings"]
     assert propose(page, "reprojection").json()["rings"] == seen
-    assert state(page)["serial"] == before["serial"]
+    after = state(page)
+    for name in ("hull", "frames_info", "carving"):
+        assert after[name] == before[name]
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app import idle_work
 from app import stream as stream_module
 from app.facts import state_facts
 from app.playback import Playback
@@ -56,7 +57,7 @@ def test_plays_every_frame_and_keeps_the_latest_hull(start, wait_for) -> None:
 def test_a_hull_of_many_faces_is_drawn_lightly_once_no_frame_comes(
     start, wait_for, monkeypatch
 ) -> None:
-    monkeypatch.setattr(stream_module, "MOST_IDLE_FACES", 1000)
+    monkeypatch.setattr(idle_work, "MOST_IDLE_FACES", 1000)
     stream = start()
     seen: list[Snapshot] = []
     stream.observe(seen.append)
@@ -378,8 +379,8 @@ def test_edits_from_many_threads_leave_the_hull_of_their_outlines(start, wait_fo
 
 
 def test_a_large_hull_is_drawn_lightly_again_after_an_edit(start, wait_for, monkeypatch) -> None:
-    monkeypatch.setattr(stream_module, "MOST_IDLE_FACES", 1000)
-    monkeypatch.setattr(stream_module, "QUIET_S", 0.2)
+    monkeypatch.setattr(idle_work, "MOST_IDLE_FACES", 1000)
+    monkeypatch.setattr(idle_work, "QUIET_S", 0.2)
     stream = start()
     wait_for(lambda: stream.snapshot.light is not None)
     edited = commit(stream, 1, shifted(stream, 1, 1.0), 0)

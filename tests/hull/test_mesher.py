@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
@@ -55,6 +57,17 @@ def test_a_view_alone_is_blamed_for_what_it_alone_removes():
     kept.add_many([box_view(0), box_view(1)])
     removed = (kept.hull().sum() - volume.hull().sum()) * GRID.spacing_m**3
     assert blamed[numbers[2]] == pytest.approx(removed)
+
+
+def test_a_view_goes_whose_last_change_touched_nothing():
+    volume, _ = box_volume()
+    wide = volume.add(box_view(0, HALF_M + 1.5))
+    volume.surface()
+    volume.replace(wide, box_view(0, HALF_M + 1.6))
+    volume.surface()
+    volume.replace(wide, replace(box_view(0), projection=box_view(1).projection))
+    expected = hull_surface(volume)
+    assert np.array_equal(volume.surface().vertices_m, expected.vertices_m)
 
 
 def test_a_hull_reprojects_into_its_silhouette():
