@@ -9,7 +9,7 @@ from fastapi.responses import HTMLResponse, JSONResponse, RedirectResponse
 from starlette.exceptions import HTTPException
 from starlette.staticfiles import StaticFiles
 
-from app import api, editing_api
+from app import api, editing_api, extraction_api
 from app.changes import Changes
 from app.gate import LOOPBACK_NAMES, Gate
 from app.relay import relay
@@ -37,6 +37,7 @@ def create_app(
     stream.observe(lambda _: app.state.changes.notify())
     app.include_router(api.router)
     app.include_router(editing_api.router)
+    app.include_router(extraction_api.router)
     _add_viewport(app, viewport)
     app.mount("/", StaticFiles(directory=static_folder(), html=True), name="static")
     app.add_exception_handler(RequestValidationError, _explain_invalid)
