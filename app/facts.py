@@ -62,6 +62,7 @@ def frame_info(record: Record) -> dict[str, Any]:
         "number": record.number,
         "state": analysed.state,
         "edited": analysed.history.is_edited,
+        "component": analysed.silhouette.component,
         "revision": analysed.history.revision,
         "votes": analysed.votes,
         "sensor": record.frame.sensor,
