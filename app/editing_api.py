@@ -27,6 +27,9 @@ Rings = Annotated[list[Ring], Field(max_length=MOST_RINGS)]
 LONGEST_LABEL = 40
 """Characters, that a label still fits beside the picture."""
 
+NOT_DRAWING = ("claim", "label")
+"""Tools that leave the rings as they are, and so what is said of how these came to be."""
+
 MOST_SIDE_M = 1000.0
 MOST_VOXELS_A_SIDE = 640
 """That an interactive grid may have: 640³ is 260 million voxels."""
@@ -202,7 +205,9 @@ def _edited(number: int, stream: Stream, operation: Callable[[Analysis], object]
 def _drawn(number: int, order: OutlineOrder, stream: Stream) -> tuple[Silhouette, str]:
     present = record_at(stream, number).silhouette
     like = replace(present, claim=order.claim, component=_label(order.component))
-    return _silhouette(order.rings, replace(like, provenance=f"edited with {order.tool}"))
+    if order.tool not in NOT_DRAWING:
+        like = replace(like, provenance=f"edited with {order.tool}")
+    return _silhouette(order.rings, like)
 
 
 def _label(text: str) -> str:

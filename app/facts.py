@@ -15,6 +15,7 @@ from core.hull.simplification import Simplified
 from core.measurement.extents import Extent
 from core.measurement.lines import LineMeasurement
 from core.reconstruction import ReconstructionSettings
+from core.silhouettes.extraction import ExtractionSettings
 
 
 def state_facts(snapshot: Snapshot, source: Source) -> dict[str, Any]:
@@ -38,6 +39,7 @@ def state_facts(snapshot: Snapshot, source: Source) -> dict[str, Any]:
         "following": snapshot.chosen is None,
         "window_m": snapshot.settings.side_m,
         "carving": carving_facts(snapshot.settings),
+        "extraction": _extraction_facts(snapshot.settings.extraction),
         "frames_info": [frame_info(record) for record in snapshot.records],
         "latency_ms": {"last": snapshot.latency_ms},
         "hull": None if snapshot.hull is None else hull_facts(snapshot.hull),
@@ -52,6 +54,15 @@ def carving_facts(settings: ReconstructionSettings) -> dict[str, Any]:
         "tolerated_misses": settings.tolerated_misses,
         "spacing_m": settings.spacing_m,
         "side_m": settings.side_m,
+    }
+
+
+def _extraction_facts(settings: ExtractionSettings) -> dict[str, Any]:
+    """Return by what radar frames' outlines are detected."""
+    return {
+        "a1": settings.censoring_factor,
+        "a2": settings.detection_factor,
+        "closing_px": settings.closing_px,
     }
 
 
