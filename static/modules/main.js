@@ -2,12 +2,15 @@
 
 import { Banner } from "./banner.js";
 import { Carving } from "./carving.js";
+import { Detection } from "./detection.js";
+import { DynamicRange } from "./dynamic-range.js";
 import { Editor } from "./editor.js";
 import { FramePanel } from "./frame-panel.js";
 import { showHull } from "./hull-view.js";
 import { resizablePanes } from "./panes.js";
 import { Proposals } from "./proposals.js";
 import { Review } from "./review.js";
+import { download, fileName } from "./screenshot.js";
 import { getJson, keepLinked, send } from "./server.js";
 import { bindShortcuts, fillSheet } from "./shortcuts.js";
 import { listenInSpace } from "./space-keys.js";
@@ -27,7 +30,7 @@ let complaint = "";
 
 const tabs = new Tabs(document.querySelectorAll("[role=tab]"));
 const banner = new Banner(part("banner"));
-const panel = new FramePanel(showEditing, complain);
+const panel = new FramePanel(showEditing, complain, showFrame);
 const { session, view, scene } = panel;
 const editor = new Editor(part("frame-canvas"), view, session, scene, {
   redraw: () => panel.redraw(),
@@ -36,6 +39,7 @@ const editor = new Editor(part("frame-canvas"), view, session, scene, {
   onTool: () => toolbar?.update(),
   onSeed: (row, column) => proposals.seed(row, column),
 });
+const dynamicRange = new DynamicRange(view);
 const toolbar = new Toolbar(panel, editor, () => state?.window_m ?? null);
 const proposals = new Proposals(
   {
@@ -46,6 +50,7 @@ const proposals = new Proposals(
     complaint: part("tool-complaint"),
     apply: part("tool-apply"),
     discard: part("tool-discard"),
+    all: part("tool-all"),
   },
   session,
   {
@@ -59,6 +64,14 @@ const proposals = new Proposals(
     },
   },
 );
+new Detection({
+  settings: () => proposals.thresholdSettings(),
+  show: (next) => {
+    proposals.discard();
+    showState(next);
+  },
+  complain,
+});
 const review = new Review(
   {
     buttons: [...document.querySelectorAll("#review button[data-state]")],
@@ -143,7 +156,9 @@ function showState(next) {
   carving.update(state);
   review.update(state);
   transport.update(state);
-  panel.bringOverlays(state.hull?.revision);
+  panel.follow(state);
+  proposals.beginWith(state.extraction);
+  toolbar.offerLabels(state.frames_info);
   bringFrame();
 }
 
@@ -183,10 +198,12 @@ async function fetchFrame(key) {
   editor.cancel();
   toolbar.keepWindow();
   panel.take(...answer);
+  dynamicRange.take(answer[1]);
 }
 
 function showEditing() {
   toolbar?.update();
+  proposals?.update();
   showBanner();
   // News that came while somebody was drawing has waited.
   if (state) bringFrame();
@@ -231,6 +248,20 @@ function openSheet() {
   part("sheet").showModal();
 }
 
+/** One step back: the last point of what is being drawn, or else the last edit. */
+function undo() {
+  if (scene.draft) editor.remove();
+  else {
+    proposals.discard();
+    session.undo();
+  }
+}
+
+function savePicture() {
+  const { name } = state.source;
+  download(panel.picture(name), fileName(name, session.frame.number));
+}
+
 /** Take an excluded frame back in, or exclude it. */
 function toggleExcluded() {
   const info = state?.frames_info?.[state.shown - 1];
@@ -265,7 +296,7 @@ bindShortcuts(
     smaller: () => toolbar.scaleBrush(1 / 1.25),
     larger: () => toolbar.scaleBrush(1.25),
     claim: () => toolbar.toggleClaim(),
-    undo: () => session.undo(),
+    undo,
     redo: () => session.redo(),
     enter,
     escape,
@@ -275,15 +306,19 @@ bindShortcuts(
     "zoom in": () => view.zoom(1.25),
     "zoom out": () => view.zoom(1 / 1.25),
     fit: () => toolbar.fit(true),
-    ghost: () => panel.toggleGhost(),
-    overlay: () => panel.toggleHull(),
+    ghost: () => panel.toggleLayer("ghost"),
+    overlay: () => panel.toggleLayer("hull"),
+    shadow: () => panel.toggleLayer("shadow"),
     sheet: openSheet,
   },
   (isHidden) => {
     scene.isHidden = isHidden;
     panel.redraw();
   },
+  // Nothing is kept in the middle of a stroke.
+  (name) => !session.isBusy || ["escape", "smaller", "larger"].includes(name),
 );
+part("save-picture").addEventListener("click", savePicture);
 // A button that was pressed with the pointer leaves the keys to the picture.
 document.addEventListener("click", (event) => {
   if (event.detail > 0 && event.target.closest(".frame button, .tool-list button")) {
@@ -300,7 +335,7 @@ resizablePanes(document.querySelector("main"), {
   first: part("separator-first"),
   third: part("separator-third"),
 });
-const [tools] = await Promise.all([getJson("/api/tools"), toolbar.chooseColours()]);
+const [tools] = await Promise.all([getJson("/api/tools"), dynamicRange.chooseColours()]);
 proposals.offer(tools);
 toolbar.offer(tools);
 toolbar.update();
