@@ -14,13 +14,20 @@ from core.analysis.analysis import Analysis
 from core.analysis.frames import ReviewState
 from core.analysis.history import NothingLeft, StaleRevision
 from core.hull.drawing import MOST_RINGS, MOST_VERTICES, drawn_silhouette
-from core.hull.shadow import CarvingRule
+from core.hull.shadow import CarvingRule, shadow_region
+from core.silhouettes.editing.disagreement import disagreement
 from core.silhouettes.silhouette import Claim, Silhouette
 
 router = APIRouter(prefix="/api")
 
 Ring = Annotated[list[tuple[float, float]], Field(max_length=MOST_VERTICES)]
 Rings = Annotated[list[Ring], Field(max_length=MOST_RINGS)]
+
+LONGEST_LABEL = 40
+"""Characters, that a label still fits beside the picture."""
+
+NOT_DRAWING = ("claim", "label")
+"""Tools that leave the rings as they are, and so what is said of how these came to be."""
 
 MOST_SIDE_M = 1000.0
 MOST_VOXELS_A_SIDE = 640
@@ -38,7 +45,7 @@ class OutlineOrder(Body):
 
     rings: Rings = Field(description="Each a list of (row, column); none: shows no target.")
     claim: Claim
-    component: str = Field(default="target", min_length=1, max_length=80)
+    component: str = Field(default="target", description="Label of what it outlines.")
     tool: str = Field(default="drawing", min_length=1, max_length=40)
     base_revision: int = Field(description="Of the outline that this one was made from.")
 
@@ -78,7 +85,7 @@ class CarvingOrder(Body):
 @router.put("/frames/{number}/silhouette")
 def commit_outline(number: int, order: OutlineOrder, stream: Stream) -> dict[str, Any]:
     """Give a frame another outline, in the journal, and return the frame once the hull follows."""
-    with _refusing():
+    with refusing():
         silhouette, repair = _drawn(number, order, stream)
         stream.edit(
             lambda analysis: analysis.commit(
@@ -95,7 +102,7 @@ def commit_outline(number: int, order: OutlineOrder, stream: Stream) -> dict[str
 @router.put("/frames/{number}/preview")
 def preview_outline(number: int, order: OutlineOrder, stream: Stream) -> dict[str, Any]:
     """Let the hull follow an outline that is not committed; the latest wins."""
-    with _refusing():
+    with refusing():
         silhouette, _ = _drawn(number, order, stream)
         stream.preview(number, silhouette, base_revision=order.base_revision)
     return facts_of(stream, number)
@@ -143,7 +150,7 @@ def propose(number: int, order: ProposalOrder, stream: Stream) -> dict[str, Any]
     """Return the outline that a tool proposes; nothing changes."""
     snapshot = stream.snapshot
     record = record_at(stream, number)
-    with _refusing():
+    with refusing():
         drawn = None if order.rings is None else _silhouette(order.rings, record.silhouette)[0]
         question = Question(snapshot=snapshot, record=record, drawn=drawn or record.silhouette)
         return proposal(order.tool, order.parameters, question).facts()
@@ -151,11 +158,23 @@ def propose(number: int, order: ProposalOrder, stream: Stream) -> dict[str, Any]
 
 @router.get("/frames/{number}/reprojection")
 def read_reprojection(number: int, stream: Stream) -> dict[str, Any]:
-    """Return the outline of the hull as the frame sees it, and that hull's revision."""
-    snapshot = stream.snapshot
-    rings = reprojected_rings(snapshot, record_at(stream, number))
-    revision = None if snapshot.hull is None else snapshot.hull.revision
-    return {"rings": [ring.tolist() for ring in rings], "revision": revision}
+    """Return the outline of the hull as the frame sees it, and how it differs from the frame's.
+
+    What the shadow rule leaves open behind a lit side is no difference.
+    """
+    snapshot, record = stream.snapshot, record_at(stream, number)
+    drawn = record.silhouette
+    rings = reprojected_rings(snapshot, record)
+    shadow = shadow_region(drawn) if snapshot.settings.rule == "shadow" else ()
+    found = disagreement(drawn.rings, rings, shadow)
+    return {
+        "rings": [ring.tolist() for ring in rings],
+        "revision": None if snapshot.hull is None else snapshot.hull.revision,
+        "outline_revision": record.analysed.history.revision,
+        "only_outline_px": found.only_outline_px,
+        "only_hull_px": found.only_reprojection_px,
+        "overlap": found.overlap,
+    }
 
 
 @router.put("/carving")
@@ -173,22 +192,34 @@ def set_carving(order: CarvingOrder, stream: Stream) -> dict[str, Any]:
             )
         analysis.set_carving(settings)
 
-    with _refusing():
+    with refusing():
         stream.edit(change)
     return state_of(stream)
 
 
 def _edited(number: int, stream: Stream, operation: Callable[[Analysis], object]) -> dict[str, Any]:
     record_at(stream, number)
-    with _refusing():
+    with refusing():
         stream.edit(operation)
     return facts_of(stream, number)
 
 
 def _drawn(number: int, order: OutlineOrder, stream: Stream) -> tuple[Silhouette, str]:
     present = record_at(stream, number).silhouette
-    like = replace(present, claim=order.claim, component=order.component)
-    return _silhouette(order.rings, replace(like, provenance=f"edited with {order.tool}"))
+    like = replace(present, claim=order.claim, component=_label(order.component))
+    if order.tool not in NOT_DRAWING:
+        like = replace(like, provenance=f"edited with {order.tool}")
+    return _silhouette(order.rings, like)
+
+
+def _label(text: str) -> str:
+    label = " ".join(text.split())
+    if not 1 <= len(label) <= LONGEST_LABEL or not label.isprintable():
+        raise ValueError(
+            f"A part's label has 1 to {LONGEST_LABEL} printable characters; this one has "
+            f'{len(label)}. Call it "target" if it is the whole.'
+        )
+    return label
 
 
 def _silhouette(rings: Rings, like: Silhouette) -> tuple[Silhouette, str]:
@@ -202,7 +233,7 @@ def _silhouette(rings: Rings, like: Silhouette) -> tuple[Silhouette, str]:
 
 
 @contextmanager
-def _refusing() -> Iterator[None]:
+def refusing() -> Iterator[None]:
     """Answer what the engine refuses with its sentence."""
     try:
         yield

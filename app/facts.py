@@ -18,6 +18,7 @@ from core.measurement.extents import Extent
 from core.measurement.lines import LineMeasurement
 from core.radar.course import PassCourse
 from core.reconstruction import ReconstructionSettings
+from core.silhouettes.extraction import ExtractionSettings
 
 
 def state_facts(snapshot: Snapshot, source: Source) -> dict[str, Any]:
@@ -42,6 +43,7 @@ def state_facts(snapshot: Snapshot, source: Source) -> dict[str, Any]:
         "following": snapshot.chosen is None,
         "window_m": snapshot.settings.side_m,
         "carving": carving_facts(snapshot.settings),
+        "extraction": _extraction_facts(snapshot.settings.extraction),
         "frames_info": [frame_info(record) for record in snapshot.records],
         "sights": [_vector(record.frame.line_of_sight) for record in snapshot.records],
         "blind": [_vector(blind_direction(record)) for record in snapshot.records],
@@ -63,6 +65,15 @@ def carving_facts(settings: ReconstructionSettings) -> dict[str, Any]:
     }
 
 
+def _extraction_facts(settings: ExtractionSettings) -> dict[str, Any]:
+    """Return by what radar frames' outlines are detected."""
+    return {
+        "a1": settings.censoring_factor,
+        "a2": settings.detection_factor,
+        "closing_px": settings.closing_px,
+    }
+
+
 def frame_info(record: Record) -> dict[str, Any]:
     """Return what the list of all frames shows of one."""
     analysed = record.analysed
@@ -70,11 +81,11 @@ def frame_info(record: Record) -> dict[str, Any]:
         "number": record.number,
         "state": analysed.state,
         "edited": analysed.history.is_edited,
+        "component": analysed.silhouette.component,
         "revision": analysed.history.revision,
         "votes": analysed.votes,
         "held_back": analysed.ballot.view is not None and not analysed.votes,
         "sensor": record.frame.sensor,
-        "component": record.silhouette.component,
     }
 
 

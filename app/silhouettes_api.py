@@ -63,7 +63,7 @@ def _imported(stream: LiveStream, content: bytes, name: str) -> dict[str, list[i
             outlined = _outlined(annotation, frame, name)
             if not _is_same(outlined.silhouette, frame.silhouette, is_mask=annotation.is_mask):
                 outlines[annotation.number] = outlined
-        analysis.commit_all(outlines)
+        analysis.commit_all(outlines, tool="import")
 
     stream.edit(take_over)
     unchanged = [each.number for each in annotations if each.number not in outlines]

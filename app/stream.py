@@ -314,7 +314,8 @@ class LiveStream:
         with self._working:
             if self._is_over(run):
                 return False
-            self._analysis.receive(take.frame, take.silhouette)
+            outline = take.outline_by(self._analysis.settings.extraction)
+            self._analysis.receive(take.frame, outline)
             self._show_analysis()
         self._observers.call()
         return True

@@ -10,10 +10,15 @@ from core.silhouettes.silhouette import Silhouette
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Take:
-    """A frame and the outline that extraction found in it."""
+    """A frame, and the outline that extraction by some settings found in it."""
 
     frame: Frame
     silhouette: Silhouette
+    extraction: ExtractionSettings
+
+    def outline_by(self, extraction: ExtractionSettings) -> Silhouette | None:
+        """Return the outline if it was found by these settings, else None."""
+        return self.silhouette if extraction == self.extraction else None
 
 
 class Tape:
@@ -48,7 +53,8 @@ class Tape:
             frame = next(self._rest, None)
             if frame is None:
                 return None
-            return Take(frame=frame, silhouette=extract_silhouette(frame, self._extraction))
+            silhouette = extract_silhouette(frame, self._extraction)
+            return Take(frame=frame, silhouette=silhouette, extraction=self._extraction)
         except Exception as failure:
             self._failure = failure
             raise

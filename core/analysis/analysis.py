@@ -4,8 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import get_args
 
+from core.analysis.extracting import Extraction, extracted_again
 from core.analysis.frames import AnalysedFrame, ReviewState
-from core.analysis.history import EXTRACTION, Edit, History, Outlined
+from core.analysis.history import EXTRACTION, Edit, History, NothingLeft, Outlined
 from core.analysis.hull import Hull, hull_of
 from core.analysis.polling import bring_in_step
 from core.frame import Frame
@@ -52,6 +53,7 @@ class Analysis:
         self._frames: list[AnalysedFrame] = []
         self._earlier: list[AnalysedFrame] = []
         self._journal: list[Edit] = []
+        self._extractions: list[Extraction] = []
         self._coarse: VoteVolume | None = None
         self._is_preview = False
         self._revision = revision
@@ -170,18 +172,16 @@ class Analysis:
         """
         history = self._based(number, base_revision)
         outlined = Outlined(silhouette=silhouette, tool=tool, repair=repair)
-        return self._revise(number, history.committed(outlined), tool)
+        return self._revise({number: history.committed(outlined)}, tool)[0]
 
-    def commit_all(self, outlines: Mapping[int, Outlined]) -> None:
-        """Give several frames, by number, other outlines than their present ones: all or none.
+    def commit_all(self, outlines: Mapping[int, Outlined], *, tool: str) -> None:
+        """Give several frames, by number, outlines that `tool` made: all or none.
 
         Raises:
             ValueError: there is no such frame, or an outline that cannot vote.
         """
-        for number, outlined in outlines.items():
-            self._with_outline(self.frame(number), outlined.silhouette)
-        for number, outlined in outlines.items():
-            self._revise(number, self.frame(number).history.committed(outlined), outlined.tool)
+        histories = {n: self.frame(n).history.committed(o) for n, o in outlines.items()}
+        self._revise(histories, tool)
 
     def undo(self, number: int, *, base_revision: int) -> AnalysedFrame:
         """Take a frame's last edit back; no other frame changes.
@@ -191,7 +191,7 @@ class Analysis:
             NothingLeft: there is none.
             ValueError: there is no such frame.
         """
-        return self._revise(number, self._based(number, base_revision).undone(), "undo")
+        return self._revise({number: self._based(number, base_revision).undone()}, "undo")[0]
 
     def redo(self, number: int, *, base_revision: int) -> AnalysedFrame:
         """Do again the edit of a frame that was taken back last.
@@ -201,7 +201,7 @@ class Analysis:
             NothingLeft: there is none.
             ValueError: there is no such frame.
         """
-        return self._revise(number, self._based(number, base_revision).redone(), "redo")
+        return self._revise({number: self._based(number, base_revision).redone()}, "redo")[0]
 
     def set_state(self, number: int, state: ReviewState) -> AnalysedFrame:
         """Say how far the analyst is with a frame; an excluded one does not vote.
@@ -228,22 +228,40 @@ class Analysis:
     ) -> tuple[AnalysedFrame, ...]:
         """Take the outlines of all frames from their images anew, as edits that can be undone.
 
-        Frames whose outline the analyst has edited keep it unless `overwrites_edited`.
+        Frames whose outline the analyst has edited keep it unless `overwrites_edited`; those of
+        which the settings find the same outline keep theirs, without an edit.
 
         Raises:
             ValueError: a frame without contrast.
         """
-        due = [f for f in self._frames if overwrites_edited or not f.history.is_edited]
-        found = [(f, extract_silhouette(f.received, extraction)) for f in due]
-        self._settings = replace(self._settings, extraction=extraction)
-        return tuple(
-            self._revise(
-                frame.number,
-                frame.history.committed(Outlined(silhouette=silhouette, tool=EXTRACTION)),
-                EXTRACTION,
-            )
-            for frame, silhouette in found
+        found = extracted_again(self._frames, extraction, overwrites_edited=overwrites_edited)
+        before = self._settings.extraction
+        outlined = {
+            number: Outlined(silhouette=silhouette, tool=EXTRACTION)
+            for number, silhouette in found.outlines.items()
+        }
+        changed = self._revise(
+            {n: self.frame(n).history.committed(o) for n, o in outlined.items()}, EXTRACTION
         )
+        self._settings = replace(self._settings, extraction=extraction)
+        revisions = {frame.number: frame.history.revision for frame in changed}
+        self._extractions.append(Extraction(before=before, revisions=revisions))
+        return changed
+
+    def undo_extraction(self) -> tuple[AnalysedFrame, ...]:
+        """Take the last `extract_again` back, settings too; frames edited since stay as they are.
+
+        Raises:
+            NothingLeft: there is none.
+        """
+        if not self._extractions:
+            raise NothingLeft("There is no detection in all frames to take back.")
+        last = self._extractions[-1]
+        same = [f for f in self._frames if f.history.revision == last.revisions.get(f.number)]
+        changed = self._revise({f.number: f.history.undone() for f in same}, "undo")
+        self._settings = replace(self._settings, extraction=last.before)
+        self._extractions.pop()
+        return changed
 
     def set_carving(self, settings: ReconstructionSettings) -> None:
         """Carve by other settings: threshold, rule, grid, which frames vote.
@@ -289,21 +307,25 @@ class Analysis:
         history.check(base_revision)
         return history
 
-    def _revise(self, number: int, history: History, tool: str) -> AnalysedFrame:
-        """Let a frame's outline follow its history, and note that in the journal."""
-        before = self.frame(number)
-        after = self._with_outline(before, history.present.silhouette)
-        self._adopt(self._with(replace(after, history=history)))
-        self._journal.append(
+    def _revise(self, histories: Mapping[int, History], tool: str) -> tuple[AnalysedFrame, ...]:
+        """Let frames' outlines follow their histories, and note that in the journal."""
+        before = {number: self.frame(number) for number in histories}
+        after = {
+            n: replace(self._with_outline(before[n], history.present.silhouette), history=history)
+            for n, history in histories.items()
+        }
+        self._adopt([after.get(frame.number, frame) for frame in self._frames])
+        self._journal += [
             Edit(
                 frame=number,
                 revision=history.revision,
                 tool=tool,
-                before=before.silhouette,
+                before=before[number].silhouette,
                 after=history.present.silhouette,
             )
-        )
-        return self.frame(number)
+            for number, history in histories.items()
+        ]
+        return tuple(after.values())
 
     def _with_outline(self, frame: AnalysedFrame, silhouette: Silhouette) -> AnalysedFrame:
         return replace(frame, ballot=ballot_of(frame.received, silhouette, self._settings))

@@ -3,12 +3,15 @@
 import { frameRows, showNote, showRows } from "./facts-view.js";
 import { FrameView } from "./frame-view.js";
 import { Latest } from "./latest.js";
+import { LayerLegend } from "./layer-legend.js";
 import { withUnit } from "./numbers.js";
-import { Overlay } from "./overlay.js";
+import { COLOURS, Overlay } from "./overlay.js";
+import { composed } from "./screenshot.js";
 import { getJson, getLevels } from "./server.js";
 import { Session } from "./session.js";
 
 const part = (id) => document.getElementById(id);
+const LAYERS = ["ghost", "hull", "shadow"];
 
 export class FramePanel {
   view;
@@ -20,41 +23,88 @@ export class FramePanel {
   #overlay = new Overlay(part("overlay-canvas"));
   #onChange;
   #drawing = 0;
-  #wantsGhost = false;
-  #wantsHull = false;
+  #legend = new LayerLegend(part("overlay-legend"));
+  #layers = new Set(["shadow"]);
+  #rule = "shadow";
+  #reprojection = null;
   #seenOverlays = "";
   #bringing = new Latest((hull) => this.#fetchOverlays(hull), 60);
   #hull = 0;
 
-  /** Call `onChange()` when the outline changes and `onComplaint(sentence)` for what is refused. */
-  constructor(onChange, onComplaint) {
+  /**
+   * Call `onChange()` when the outline changes, `onComplaint(sentence)` for what is refused, and
+   * `onGo(number)` to see another frame.
+   */
+  constructor(onChange, onComplaint, onGo) {
     this.#onChange = onChange;
     this.view = new FrameView(part("frame-canvas"), showReading, (plot) => {
       this.#overlay.setPlot(plot);
       this.redraw();
       this.onMoved();
     });
-    this.session = new Session(() => this.#show(), onComplaint);
+    this.session = new Session(() => this.#show(), onComplaint, onGo);
   }
 
-  get wantsGhost() {
-    return this.#wantsGhost;
+  /** What lies over the picture besides the outline: of "ghost", "hull", "shadow". */
+  layers() {
+    return LAYERS.filter((name) => this.#layers.has(name));
   }
 
-  get wantsHull() {
-    return this.#wantsHull;
+  /** Show these layers and no other; names that are none are passed over. */
+  setLayers(names) {
+    this.#layers = new Set(names.filter((name) => LAYERS.includes(name)));
+    this.bringOverlays();
+    this.#onChange();
+  }
+
+  toggleLayer(name) {
+    const others = this.layers().filter((other) => other !== name);
+    this.setLayers(this.#layers.has(name) ? others : [...others, name]);
   }
 
   /** Draw what lies over the picture, once for all changes of a moment. */
   redraw() {
     this.#drawing ||= requestAnimationFrame(() => {
       this.#drawing = 0;
-      const { session, scene } = this;
-      scene.rings = session.frame && session.rings;
-      scene.claim = session.claim;
-      scene.isEditable = session.isEditable;
-      scene.mine = session.conflict?.rings ?? null;
-      this.#overlay.draw(scene);
+      this.#arrange();
+      this.#overlay.draw(this.scene);
+    });
+  }
+
+  /** The picture with what lies over it, but for the handles, as one canvas with a title. */
+  picture(title) {
+    const { frame } = this.session;
+    this.#arrange();
+    this.#overlay.draw({ ...this.scene, isEditable: false, isHidden: false, brush: null, draft: null });
+    const canvases = [part("frame-canvas"), part("overlay-canvas")];
+    const legend = [[COLOURS.outline, "outline"], ...this.#legend.entries()];
+    const whole = composed(canvases, { title, stamp: `frame ${frameStamp(frame)}`, legend });
+    this.redraw();
+    return whole;
+  }
+
+  /** Bring the scene up to what the session and the layers are. */
+  #arrange() {
+    const { session, scene } = this;
+    const { frame } = session;
+    Object.assign(scene, {
+      rings: frame && session.rings,
+      claim: session.claim,
+      component: session.component,
+      isEditable: session.isEditable,
+      mine: session.conflict?.rings ?? null,
+      shape: frame?.shape,
+      isShaded: session.claim !== "complete" && this.#rule === "shadow",
+      showsShadow: this.#layers.has("shadow"),
+    });
+    this.#legend.show({
+      frame,
+      session,
+      proposal: scene.proposal,
+      reprojection: this.#layers.has("hull") ? this.#reprojection : null,
+      wantsHull: this.#layers.has("hull"),
+      wantsGhost: this.#layers.has("ghost"),
+      wantsShadow: scene.isShaded && scene.showsShadow && session.rings.length > 0,
     });
   }
 
@@ -69,6 +119,7 @@ export class FramePanel {
     this.scene.draft = null;
     this.scene.ghost = null;
     this.scene.reprojection = null;
+    this.#reprojection = null;
     this.session.adopt(frame);
     this.view.setFrame(frame, levels);
     part("frame-canvas").dataset.frame = frame.number;
@@ -82,29 +133,24 @@ export class FramePanel {
     part("frame-canvas").dataset.frame = 0;
   }
 
-  toggleGhost() {
-    this.#wantsGhost = !this.#wantsGhost;
-    this.bringOverlays();
-    this.#onChange();
-  }
-
-  toggleHull() {
-    this.#wantsHull = !this.#wantsHull;
-    this.bringOverlays();
-    this.#onChange();
+  /** Follow the hull and the rule by which it is carved. */
+  follow({ hull, carving }) {
+    this.#rule = carving.rule;
+    this.bringOverlays(hull?.revision);
   }
 
   /** Get what lies under the outline anew where the frame or the hull is another. */
   bringOverlays(hull = this.#hull) {
     this.#hull = hull;
-    if (!this.#wantsGhost) this.scene.ghost = null;
-    if (!this.#wantsHull) this.scene.reprojection = null;
+    const [wantsGhost, wantsHull] = ["ghost", "hull"].map((name) => this.#layers.has(name));
+    if (!wantsGhost) this.scene.ghost = null;
+    if (!wantsHull) this.scene.reprojection = null;
     const { number } = this.session.frame ?? {};
-    const wanted = [number, hull, this.#wantsGhost, this.#wantsHull].join("/");
+    const wanted = [number, hull, wantsGhost, wantsHull].join("/");
+    this.redraw();
     if (wanted === this.#seenOverlays && number) return;
     this.#seenOverlays = wanted;
     if (number) this.#bringing.ask(hull);
-    this.redraw();
   }
 
   async #fetchOverlays() {
@@ -112,13 +158,15 @@ export class FramePanel {
     if (frame === null) return;
     const { number } = frame;
     const neighbour = number > 1 ? number - 1 : number + 1;
+    const get = (name, path) => (this.#layers.has(name) ? getJson(path).catch(() => null) : null);
     const [ghost, hull] = await Promise.all([
-      this.#wantsGhost ? getJson(`/api/frames/${neighbour}`).catch(() => null) : null,
-      this.#wantsHull ? getJson(`/api/frames/${number}/reprojection`).catch(() => null) : null,
+      get("ghost", `/api/frames/${neighbour}`),
+      get("hull", `/api/frames/${number}/reprojection`),
     ]);
     if (this.session.frame?.number !== number) return;
-    this.scene.ghost = this.#wantsGhost && ghost ? onto(frame, ghost) : null;
-    this.scene.reprojection = this.#wantsHull && hull ? hull.rings : null;
+    this.scene.ghost = this.#layers.has("ghost") && ghost ? onto(frame, ghost) : null;
+    this.#reprojection = this.#layers.has("hull") ? hull : null;
+    this.scene.reprojection = this.#reprojection?.rings ?? null;
     this.redraw();
   }
 
@@ -161,13 +209,13 @@ function showReading(reading) {
   const pairs = [
     ["range", reading.range],
     ["cross-range", reading.crossRange],
-    ["level", reading.level],
+    ["", reading.level],
   ];
   output.replaceChildren(
     ...pairs.flatMap(([name, value], index) => {
       const bold = document.createElement("b");
       bold.textContent = value;
-      return [`${index ? " · " : ""}${name} `, bold];
+      return [`${index ? " · " : ""}${name}${name && " "}`, bold];
     }),
   );
 }

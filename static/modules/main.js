@@ -3,6 +3,8 @@
 import { Banner } from "./banner.js";
 import { ExportMenu } from "./export-menu.js";
 import { Carving } from "./carving.js";
+import { Detection } from "./detection.js";
+import { DynamicRange } from "./dynamic-range.js";
 import { Editor } from "./editor.js";
 import { FramePanel } from "./frame-panel.js";
 import { showHull } from "./hull-view.js";
@@ -11,6 +13,7 @@ import { Loading } from "./loading.js";
 import { Proposals } from "./proposals.js";
 import { showSaved } from "./saved-view.js";
 import { Review } from "./review.js";
+import { download, fileName } from "./screenshot.js";
 import { getJson, keepLinked, send } from "./server.js";
 import { RightPane } from "./right-pane.js";
 import { bindShortcuts, fillSheet } from "./shortcuts.js";
@@ -37,7 +40,7 @@ let dismissed = "";
 
 const tabs = new Tabs(document.querySelectorAll("[role=tab]"));
 const banner = new Banner(part("banner"));
-const panel = new FramePanel(showEditing, complain);
+const panel = new FramePanel(showEditing, complain, showFrame);
 const { session, view, scene } = panel;
 const rightPane = new RightPane({ go: showFrame });
 const editor = new Editor(part("frame-canvas"), view, session, scene, {
@@ -47,6 +50,7 @@ const editor = new Editor(part("frame-canvas"), view, session, scene, {
   onTool: () => toolbar?.update(),
   onSeed: (row, column) => proposals.seed(row, column),
 });
+const dynamicRange = new DynamicRange(view);
 const toolbar = new Toolbar(panel, editor, () => state?.window_m ?? null);
 const proposals = new Proposals(
   {
@@ -57,6 +61,7 @@ const proposals = new Proposals(
     complaint: part("tool-complaint"),
     apply: part("tool-apply"),
     discard: part("tool-discard"),
+    all: part("tool-all"),
   },
   session,
   {
@@ -70,6 +75,14 @@ const proposals = new Proposals(
     },
   },
 );
+new Detection({
+  settings: () => proposals.thresholdSettings(),
+  show: (next) => {
+    proposals.discard();
+    showState(next);
+  },
+  complain,
+});
 const review = new Review(
   {
     buttons: [...document.querySelectorAll("#review button[data-state]")],
@@ -187,7 +200,9 @@ function showState(next) {
   review.update(state);
   transport.update(state);
   timeline.update(state);
-  panel.bringOverlays(state.hull?.revision);
+  panel.follow(state);
+  proposals.beginWith(state.extraction);
+  toolbar.offerLabels(state.frames_info);
   space.update(state);
   share.update(state);
   bringFrame();
@@ -240,11 +255,13 @@ async function fetchFrame(key) {
   editor.cancel();
   toolbar.keepWindow();
   panel.take(...answer);
+  dynamicRange.take(answer[1]);
 }
 
 function showEditing() {
   toolbar?.update();
   rightPane.greyWhile(session.isSaving);
+  proposals?.update();
   showBanner();
   showSaved(session, linkWasLost);
   // News that came while somebody was drawing has waited.
@@ -319,6 +336,20 @@ function openSheet() {
   part("sheet").showModal();
 }
 
+/** One step back: the last point of what is being drawn, or else the last edit. */
+function undo() {
+  if (scene.draft) editor.remove();
+  else {
+    proposals.discard();
+    session.undo();
+  }
+}
+
+function savePicture() {
+  const { name } = state.source;
+  download(panel.picture(name), fileName(name, session.frame.number));
+}
+
 /** Take an excluded frame back in, or exclude it. */
 function toggleExcluded() {
   const info = state?.frames_info?.[state.shown - 1];
@@ -353,7 +384,7 @@ bindShortcuts(
     smaller: () => toolbar.scaleBrush(1 / 1.25),
     larger: () => toolbar.scaleBrush(1.25),
     claim: () => toolbar.toggleClaim(),
-    undo: () => session.undo(),
+    undo,
     redo: () => session.redo(),
     enter,
     escape,
@@ -363,15 +394,19 @@ bindShortcuts(
     "zoom in": () => view.zoom(1.25),
     "zoom out": () => view.zoom(1 / 1.25),
     fit: () => toolbar.fit(true),
-    ghost: () => panel.toggleGhost(),
-    overlay: () => panel.toggleHull(),
+    ghost: () => panel.toggleLayer("ghost"),
+    overlay: () => panel.toggleLayer("hull"),
+    shadow: () => panel.toggleLayer("shadow"),
     sheet: openSheet,
   },
   (isHidden) => {
     scene.isHidden = isHidden;
     panel.redraw();
   },
+  // Nothing is kept in the middle of a stroke.
+  (name) => !session.isBusy || ["escape", "smaller", "larger"].includes(name),
 );
+part("save-picture").addEventListener("click", savePicture);
 // A button that was pressed with the pointer leaves the keys to the picture.
 document.addEventListener("click", (event) => {
   if (event.detail > 0 && event.target.closest(".frame button, .tool-list button, .history button")) {
@@ -390,7 +425,7 @@ resizablePanes(document.querySelector("main"), {
   first: part("separator-first"),
   third: part("separator-third"),
 });
-const [tools] = await Promise.all([getJson("/api/tools"), toolbar.chooseColours()]);
+const [tools] = await Promise.all([getJson("/api/tools"), dynamicRange.chooseColours()]);
 proposals.offer(tools);
 toolbar.offer(tools);
 toolbar.update();

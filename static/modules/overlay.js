@@ -4,7 +4,8 @@
 // handles keep their size on screen at every zoom.
 
 import { clipTo, onCanvas } from "./frame-view.js";
-import { between, middleOf } from "./rings.js";
+import { Hatcher } from "./hatching.js";
+import { between, middleOf, shadowStrips } from "./rings.js";
 
 export const COLOURS = {
   outline: "#40e0d0",
@@ -12,8 +13,6 @@ export const COLOURS = {
   mine: "#ff7ac6",
   ghost: "#b9c4d6",
   reprojection: "#8fb0ff",
-  onlyOutline: "#5fd68a",
-  onlyHull: "#6f8cff",
   cut: "#ff7b72",
   dark: "#0b0e14",
 };
@@ -25,7 +24,7 @@ const FONT = '600 12px system-ui, "Segoe UI", "Helvetica Neue", "Noto Sans", "De
 
 export class Overlay {
   #canvas;
-  #scratch = document.createElement("canvas");
+  #hatcher = new Hatcher();
   #plot = null;
 
   constructor(canvas) {
@@ -49,7 +48,8 @@ export class Overlay {
     context.save();
     clipTo(context, plot);
     context.lineJoin = "round";
-    if (scene.reprojection) this.#drawDisagreement(context, scene, scale);
+    if (scene.isShaded && scene.showsShadow) this.#drawShadow(context, scene);
+    if (scene.reprojection) this.#drawDisagreement(context, scene);
     if (scene.ghost) this.#line(context, scene.ghost, COLOURS.ghost, 1.25, [2, 3]);
     if (scene.mine) this.#line(context, scene.mine, COLOURS.mine, 1.5, [7, 4]);
     this.#line(context, scene.rings, COLOURS.outline, 1.75, []);
@@ -86,30 +86,27 @@ export class Overlay {
     context.setLineDash([]);
   }
 
-  /** One hue where only the outline is, another where only the hull is. */
-  #drawDisagreement(context, scene, scale) {
-    const { rings, reprojection } = scene;
-    context.globalAlpha = 0.5;
-    this.#drawDifference(context, rings, reprojection, COLOURS.onlyOutline, scale);
-    this.#drawDifference(context, reprojection, rings, COLOURS.onlyHull, scale);
-    context.globalAlpha = 1;
-    this.#line(context, reprojection, COLOURS.reprojection, 1.25, [3, 3]);
+  /** What a lit side leaves open behind it: hatched, for it is no part of the outline. */
+  #drawShadow(context, scene) {
+    this.#hatcher.draw(context, "shadow", [this.#shadow(scene), this.#area(scene.rings)]);
   }
 
-  #drawDifference(context, whole, taken, colour, scale) {
-    const scratch = this.#scratch;
-    scratch.width = this.#canvas.width;
-    scratch.height = this.#canvas.height;
-    const part = scratch.getContext("2d");
-    part.setTransform(scale, 0, 0, scale, 0, 0);
-    part.fillStyle = colour;
-    this.#trace(part, whole);
-    part.fill("evenodd");
-    part.globalCompositeOperation = "destination-out";
-    this.#trace(part, taken);
-    part.fill("evenodd");
-    const { clientWidth, clientHeight } = this.#canvas;
-    context.drawImage(scratch, 0, 0, clientWidth, clientHeight);
+  /** One hatch where only the outline is, another where only the hull is and may not be. */
+  #drawDisagreement(context, scene) {
+    const [drawn, hull] = [this.#area(scene.rings), this.#area(scene.reprojection)];
+    const shadow = scene.isShaded ? [this.#shadow(scene)] : [];
+    this.#hatcher.draw(context, "onlyOutline", [drawn, hull]);
+    this.#hatcher.draw(context, "onlyHull", [hull, drawn, ...shadow]);
+    this.#line(context, scene.reprojection, COLOURS.reprojection, 1.25, [3, 3]);
+  }
+
+  #area(rings) {
+    return [(context) => this.#trace(context, rings), "evenodd"];
+  }
+
+  #shadow({ rings, shape }) {
+    const strips = shadowStrips(rings, shape[0] - 0.5);
+    return [(context) => this.#trace(context, strips), "nonzero"];
   }
 
   /** Handles of vertices, and of middles of long edges; near the cursor only where they crowd. */
@@ -166,9 +163,11 @@ export class Overlay {
   }
 }
 
-/** What the outline claims to show, in the plot's lower left corner. */
-function drawClaim(context, plot, { claim, rings }) {
-  const text = rings.length === 0 ? "no target" : claim === "complete" ? "complete outline" : "lit side";
+/** What the outline claims to show, and of which part, in the plot's lower left corner. */
+function drawClaim(context, plot, { claim, component, rings }) {
+  const shown = claim === "complete" ? "complete outline" : "lit side";
+  const named = component === "target" ? shown : `${component}, ${shown}`;
+  const text = rings.length === 0 ? "no target" : named;
   context.font = FONT;
   context.textAlign = "left";
   context.textBaseline = "middle";

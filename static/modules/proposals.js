@@ -20,7 +20,7 @@ const TOOLS = [
   },
   {
     name: "grow",
-    label: "Grow",
+    label: "Fill a region",
     hint: "Click the picture where the target is.",
     settings: [["tolerance_db", "Tolerance", 1, 30, 0.5, 8, "dB"]],
     needsSeed: true,
@@ -44,7 +44,7 @@ const TOOLS = [
     settings: [["tolerance_px", "Tolerance", 0.05, 5, 0.05, 0.5, "px"]],
   },
   { name: "fill holes", label: "Fill holes", hint: "", settings: [] },
-  { name: "grabcut", label: "GrabCut", hint: "Parts bright from dark, beginning at the outline.", settings: [] },
+  { name: "grabcut", label: "GrabCut", hint: "Parts bright from dark, beginning at the outline.", settings: [], sensor: "optical" },
   { name: "copy", key: "copy previous", label: "Copy previous", hint: "", settings: [], from: "before" },
   { name: "copy", key: "copy next", label: "Copy next", hint: "", settings: [], from: "after" },
   { name: "interpolate", label: "Interpolate", hint: "Between the frames before and after.", settings: [], from: "both" },
@@ -77,6 +77,26 @@ export class Proposals {
     this.#parts.list.replaceChildren(...this.#offered.map((tool) => this.#button(tool)));
   }
 
+  /** Offer only what suits the frame on show. */
+  update() {
+    const sensor = this.#session.frame?.sensor;
+    for (const [index, tool] of this.#offered.entries()) {
+      this.#parts.list.children[index].hidden = !suits(tool, sensor);
+    }
+  }
+
+  /** Begin the threshold's settings with those by which all frames were detected. */
+  beginWith(extraction) {
+    const tool = TOOLS.find(({ name }) => name === "threshold");
+    for (const setting of tool.settings) setting[5] = extraction[setting[0]] ?? setting[5];
+  }
+
+  /** What the threshold is set to, whether its tool is open or not. */
+  thresholdSettings() {
+    const tool = TOOLS.find(({ name }) => name === "threshold");
+    return Object.fromEntries(tool.settings.map((setting) => [setting[0], this.#value(tool, setting)]));
+  }
+
   get isOpen() {
     return this.#tool !== null;
   }
@@ -85,7 +105,7 @@ export class Proposals {
   choose(key) {
     if (!this.#session.isEditable) return;
     const tool = this.#offered.find((each) => keyOf(each) === key);
-    if (!tool) return;
+    if (!tool || !suits(tool, this.#session.frame.sensor)) return;
     const isSameTool = tool === this.#tool;
     this.#forget();
     this.#tool = tool;
@@ -161,11 +181,12 @@ export class Proposals {
   }
 
   #show(complaint = "") {
-    const { list, form, hint, apply, discard, complaint: place } = this.#parts;
+    const { list, form, hint, apply, discard, all, complaint: place } = this.#parts;
     for (const button of list.children) {
       button.ariaPressed = String(button.dataset.key === (this.#tool && keyOf(this.#tool)));
     }
     form.hidden = this.#tool === null;
+    all.hidden = this.#tool?.name !== "threshold";
     hint.textContent = [this.#tool?.hint, this.#found && foundText(this.#found)].filter(Boolean).join(" ");
     place.textContent = complaint;
     place.hidden = complaint === "";
@@ -215,6 +236,7 @@ export class Proposals {
   }
 }
 
+const suits = (tool, sensor) => !tool.sensor || tool.sensor === sensor;
 const keyOf = (tool) => tool.key ?? tool.name;
 
 function foundText({ rings, note }) {

@@ -142,6 +142,19 @@ export function clockwiseArea(ring) {
   }, 0);
 }
 
+/**
+ * The strips behind each edge as far as `farRow`, each ring run one way around: filled by the
+ * non-zero rule they are what the radar cannot see behind the rings.
+ */
+export function shadowStrips(rings, farRow) {
+  return rings.flatMap((ring) => ring.flatMap((tail, index) => {
+    const head = ring[(index + 1) % ring.length];
+    if (tail[1] === head[1]) return [];
+    const [left, right] = tail[1] < head[1] ? [tail, head] : [head, tail];
+    return [[left, right, [farRow, right[1]], [farRow, left[1]]]];
+  }));
+}
+
 /** Points, without those nearer than `step` frame pixels to the one before. */
 export function thinned(points, step) {
   const kept = [points[0]];

@@ -1,5 +1,6 @@
 // The outline on show: what the server keeps of it, and what has been drawn since.
 
+import { EditTrail } from "./edit-trail.js";
 import { Latest } from "./latest.js";
 import { copied, rounded, sameRings } from "./rings.js";
 import { getJson, send } from "./server.js";
@@ -10,6 +11,8 @@ export class Session {
   frame = null;
   rings = [];
   claim = "lit side";
+  /** Which part of the target it outlines. */
+  component = "target";
   /** Whether somebody is drawing, so that news from the server must wait. */
   isBusy = false;
   /** The outline that lost to another page's, or was not saved, until it is kept or given up. */
@@ -20,14 +23,20 @@ export class Session {
   #pending = 0;
   #chain = Promise.resolve();
   #hasPreview = false;
+  #trail = new EditTrail();
   #onChange;
   #onComplaint;
+  #onGo;
   #preview = new Latest((wish) => this.#sendPreview(wish), PREVIEW_PAUSE_MS);
 
-  /** Call `onChange()` after each change and `onComplaint(sentence)` for what the server refuses. */
-  constructor(onChange, onComplaint) {
+  /**
+   * Call `onChange()` after each change, `onComplaint(sentence)` for what the server refuses, and
+   * `onGo(number)` where undoing begins with going to another frame.
+   */
+  constructor(onChange, onComplaint, onGo) {
     this.#onChange = onChange;
     this.#onComplaint = onComplaint;
+    this.#onGo = onGo;
   }
 
   get isEditable() {
@@ -44,6 +53,7 @@ export class Session {
     this.frame = frame;
     this.rings = copied(frame.silhouette.rings);
     this.claim = frame.silhouette.claim;
+    this.component = frame.silhouette.component;
     this.#revisions.set(frame.number, frame.silhouette.revision);
     this.#onChange();
   }
@@ -53,6 +63,7 @@ export class Session {
     this.frame = null;
     this.rings = [];
     this.conflict = null;
+    this.#trail = new EditTrail();
     this.#onChange();
   }
 
@@ -88,18 +99,19 @@ export class Session {
   }
 
   /** Keep an outline: on the page at once, on the server as soon as it answers. */
-  commit(rings, tool, claim = this.claim) {
+  commit(rings, tool, claim = this.claim, component = this.component) {
     if (!this.isEditable) return this.#chain;
     const { number, silhouette } = this.frame;
-    const isSame = claim === silhouette.claim && sameRings(rings, silhouette.rings);
-    this.rings = rings;
-    this.claim = claim;
+    const isSame = claim === silhouette.claim && component === silhouette.component &&
+      sameRings(rings, silhouette.rings);
+    Object.assign(this, { rings, claim, component });
     this.#onChange();
     if (isSame && !this.isSaving) return this.withdraw();
     const job = { number, epoch: this.#epoch, ...this.#body(rings, claim, tool) };
     return this.#queue(() => this.#save(job));
   }
 
+  /** Take the last edit of the frame on show back; where it has none, go to the last edit's. */
   undo() {
     return this.#travel("undo");
   }
@@ -108,11 +120,21 @@ export class Session {
     return this.#travel("redo");
   }
 
+  /** The frame that undo or redo acts on, which may have to be gone to first; null for none. */
+  targetOf(direction) {
+    if (!this.isEditable) return null;
+    const { number, silhouette } = this.frame;
+    if (this.isSaving || silhouette[`can_${direction}`]) return number;
+    return this.#trail.elsewhere(direction, number);
+  }
+
   /** After a conflict: put this page's outline over the other one. */
   keepMine() {
     const mine = this.conflict;
     this.conflict = null;
-    if (mine && mine.number === this.frame?.number) this.commit(mine.rings, mine.tool, mine.claim);
+    if (mine && mine.number === this.frame?.number) {
+      this.commit(mine.rings, mine.tool, mine.claim, mine.component);
+    }
   }
 
   keepTheirs() {
@@ -133,10 +155,14 @@ export class Session {
   #travel(direction) {
     if (!this.isEditable || this.isBusy) return this.#chain;
     const { number } = this.frame;
+    const target = this.targetOf(direction);
+    if (target !== number) return target === null ? this.#chain : this.#onGo(target);
     return this.#queue(async () => {
       await this.#preview.stop();
       const body = { base_revision: this.#revisions.get(number) };
-      return send("POST", `/api/frames/${number}/${direction}`, body);
+      const frame = await send("POST", `/api/frames/${number}/${direction}`, body);
+      this.#trail.note(direction, number);
+      return frame;
     });
   }
 
@@ -171,7 +197,9 @@ export class Session {
     this.#hasPreview = false;
     body.base_revision = this.#revisions.get(number);
     try {
-      return await send("PUT", `/api/frames/${number}/silhouette`, body);
+      const frame = await send("PUT", `/api/frames/${number}/silhouette`, body);
+      this.#trail.note("edit", number);
+      return frame;
     } catch (error) {
       if (epoch !== this.#epoch) throw error;
       if (error.status === undefined) {
@@ -208,7 +236,7 @@ export class Session {
     return {
       rings: rounded(rings),
       claim,
-      component: this.frame.silhouette.component ?? "target",
+      component: this.component,
       tool,
       base_revision: this.#revisions.get(this.frame.number),
     };

@@ -10,20 +10,20 @@ const GROUPS = [
     ["delete", "Del", ["Delete", "Backspace"], "Take out the vertex, or the last point drawn"],
     [null, "Alt click", [], "Take out a vertex"],
     ["polygon", "P", ["p"], "Draw a polygon; Enter or the first point closes it"],
-    ["lasso", "L", ["l"], "Draw around a region"],
+    ["lasso", "A", ["a"], "Draw around a region"],
     ["brush", "B", ["b"], "Paint"],
     ["eraser", "E", ["e"], "Rub out"],
     ["smaller", "[", ["["], "Smaller brush"],
     ["larger", "]", ["]"], "Larger brush"],
-    ["livewire", "W", ["w"], "Follow an edge from point to point"],
+    ["livewire", "L", ["l"], "Follow an edge from point to point"],
     ["claim", "K", ["k"], "Lit side only, or complete outline"],
-    ["undo", "Ctrl Z", ["$mod+z"], "Undo on this frame"],
-    ["redo", "Ctrl Shift Z", ["$mod+Shift+z", "$mod+y"], "Redo on this frame"],
+    ["undo", "Ctrl Z", ["$mod+z"], "Undo on this frame; with nothing to undo here, go to the last edit"],
+    ["redo", "Ctrl Shift Z", ["$mod+Shift+z", "$mod+y"], "Redo, likewise"],
   ]],
   ["Proposals", [
-    ["threshold", "T", ["t"], "Detect anew"],
-    ["grow", "I", ["i"], "Grow from a point"],
-    ["snap", "N", ["n"], "Snap to the edge"],
+    ["threshold", "T", ["t"], "Detect anew by a threshold"],
+    ["grow", "F", ["f"], "Fill a region that grows from a point"],
+    ["snap", "S", ["s"], "Snap to the edge"],
     ["copy previous", "C", ["c"], "Copy the previous frame's outline"],
     ["copy next", "Shift C", ["Shift+c"], "Copy the next frame's outline"],
     ["reprojection", "U", ["u"], "Begin from the hull as this frame sees it"],
@@ -34,7 +34,7 @@ const GROUPS = [
     ["todo", "1", ["1"], "To do"],
     ["ok", "2", ["2"], "Ok"],
     ["fix", "3", ["3"], "To fix"],
-    ["excluded", "X", ["x"], "Exclude from the hull, or take back in"],
+    ["excluded", "X", ["x"], "Exclude from the hull, or take back in: what if without it?"],
     [null, "Enter", [], "Accept and go to the next frame to do"],
     ["page up", "Page Up", ["PageUp"], "Previous frame"],
     ["page down", "Page Down", ["PageDown"], "Next frame"],
@@ -44,9 +44,10 @@ const GROUPS = [
     [null, "Space drag", [], "Move the picture"],
     ["zoom in", "+", ["Equal", "Shift+Equal", "NumpadAdd"], "Zoom in"],
     ["zoom out", "−", ["Minus", "NumpadSubtract"], "Zoom out"],
-    ["fit", "F", ["f"], "Fit the target"],
+    ["fit", "0", ["0", "Numpad0"], "Fit the target"],
     ["ghost", "G", ["g"], "Outline of the neighbouring frame"],
     ["overlay", "R", ["r"], "The hull as this frame sees it, and where they disagree"],
+    ["shadow", "D", ["d"], "What lies in the dark behind a lit side"],
     [null, "H held", [], "Hide all that lies over the picture"],
   ]],
   ["Playback and space", [
@@ -61,15 +62,15 @@ const GROUPS = [
 
 const NAVIGATION = /^(Arrow|Page|Home|End)/;
 
-/** Bind the table's keys to `actions` by name; H held calls `onHide(bool)`. */
-export function bindShortcuts(actions, onHide) {
+/** Bind the table's keys to `actions` by name, where `isFree(name)`; H held calls `onHide(bool)`. */
+export function bindShortcuts(actions, onHide, isFree) {
   const bindings = {};
   for (const [name, , keys] of GROUPS.flatMap(([, rows]) => rows)) {
     for (const key of keys) {
       bindings[key] = (event) => {
         if (event.defaultPrevented || isTaken(event)) return;
         event.preventDefault();
-        actions[name](event);
+        if (isFree(name)) actions[name](event);
       };
     }
   }
@@ -79,6 +80,11 @@ export function bindShortcuts(actions, onHide) {
   });
   addEventListener("keyup", (event) => event.code === "KeyH" && onHide(false));
   addEventListener("blur", () => onHide(false));
+}
+
+/** Every binding of the table, so that a test can tell that none is there twice. */
+export function allBindings() {
+  return GROUPS.flatMap(([, rows]) => rows.flatMap(([, , keys]) => keys));
 }
 
 /** Whether a key belongs to what has the focus: somebody types, or a control uses it itself. */

@@ -1,16 +1,14 @@
-// What stands around the picture: tools, undo, overlays, levels and colours.
+// What stands around the picture: tools, undo, claim and label, layers, zoom.
 
 import { withUnit } from "./numbers.js";
-import { getJson } from "./server.js";
 
 const part = (id) => document.getElementById(id);
-const NARROWEST_DB = 5;
+const LABELS = ["target", "body", "solar panel", "antenna", "boom"];
 
 export class Toolbar {
   #panel;
   #editor;
   #windowM;
-  #colours = new Map();
   #fitsTarget = true;
 
   /** Control `panel` and `editor`; `windowM()` is the side that fits the target, in metres. */
@@ -23,17 +21,17 @@ export class Toolbar {
     part("undo").addEventListener("click", () => session.undo());
     part("redo").addEventListener("click", () => session.redo());
     part("claim").addEventListener("click", () => this.toggleClaim());
-    part("ghost").addEventListener("click", () => panel.toggleGhost());
-    part("overlay").addEventListener("click", () => panel.toggleHull());
+    part("component").addEventListener("change", () => this.#setComponent());
+    part("component").addEventListener("keydown", (event) => this.#endTyping(event));
+    for (const button of this.#layerButtons()) {
+      button.addEventListener("click", () => panel.toggleLayer(button.dataset.layer));
+    }
     part("zoom-target").addEventListener("click", () => this.fit(true));
     part("zoom-whole").addEventListener("click", () => this.fit(false));
     part("brush-size").addEventListener("input", (event) => this.#setBrush(Number(event.target.value)));
     part("combining").addEventListener("change", (event) => {
       editor.combining = event.target.value;
     });
-    part("floor").addEventListener("input", () => this.#setLevels("floor"));
-    part("top").addEventListener("input", () => this.#setLevels("top"));
-    part("colours").addEventListener("change", () => this.chooseColours());
     this.#setBrush(Number(part("brush-size").value));
   }
 
@@ -50,24 +48,36 @@ export class Toolbar {
     }
   }
 
+  /** Offer the labels that outlines have, and some that parts of satellites often get. */
+  offerLabels(infos) {
+    const present = infos.map(({ component }) => component);
+    const labels = [...new Set([...LABELS, ...present])];
+    if (labels.length === part("components").children.length) return;
+    part("components").replaceChildren(...labels.map((label) => new Option("", label)));
+  }
+
   update() {
-    const { session, wantsGhost, wantsHull } = this.#panel;
+    const { session } = this.#panel;
     const silhouette = session.frame?.silhouette;
     const tool = this.#editor.toolName;
     for (const button of this.#toolButtons()) {
       button.ariaPressed = String(button.dataset.tool === tool);
       button.disabled = !session.isEditable;
     }
-    part("undo").disabled = !silhouette?.can_undo;
-    part("redo").disabled = !silhouette?.can_redo;
+    this.#tellHistory("undo", "Undo", "Ctrl Z");
+    this.#tellHistory("redo", "Redo", "Ctrl Shift Z");
     part("claim").disabled = !session.isEditable;
     part("claim-text").textContent = session.claim === "complete" ? "Complete" : "Lit side";
-    part("ghost").ariaPressed = String(wantsGhost);
-    part("overlay").ariaPressed = String(wantsHull);
-    part("overlay-legend").hidden = !wantsHull;
+    part("component").disabled = !session.isEditable;
+    if (document.activeElement !== part("component")) part("component").value = session.component;
+    const layers = this.#panel.layers();
+    for (const button of this.#layerButtons()) {
+      button.ariaPressed = String(layers.includes(button.dataset.layer));
+    }
     part("brush-size-label").hidden = !["brush", "eraser", "vertex"].includes(tool);
     part("brush-size-name").textContent = tool === "vertex" ? "Reach" : "Size";
     part("combining-label").hidden = !["polygon", "lasso", "livewire"].includes(tool);
+    part("save-picture").disabled = !session.frame;
     part("frame-canvas").dataset.revision = silhouette?.revision ?? "";
     part("frame-canvas").dataset.saving = String(session.isSaving);
   }
@@ -95,10 +105,28 @@ export class Toolbar {
     this.#panel.view.setWindow(this.#fitsTarget ? this.#windowM() : null);
   }
 
-  async chooseColours() {
-    const name = part("colours").value;
-    if (!this.#colours.has(name)) this.#colours.set(name, await getJson(`/api/colours?name=${name}`));
-    if (part("colours").value === name) this.#panel.view.setColours(this.#colours.get(name));
+  #setComponent() {
+    const { session } = this.#panel;
+    session.commit(session.rings, "label", session.claim, part("component").value.trim());
+  }
+
+  /** Enter keeps what was typed, Escape does not, and both give the keys back to the picture. */
+  #endTyping(event) {
+    if (!["Enter", "Escape"].includes(event.key)) return;
+    event.preventDefault();
+    if (event.key === "Escape") part("component").value = this.#panel.session.component;
+    part("frame-canvas").focus({ preventScroll: true });
+  }
+
+  #tellHistory(direction, name, keys) {
+    const { session } = this.#panel;
+    const target = session.targetOf(direction);
+    const isHere = target === null || target === session.frame?.number;
+    const button = part(direction);
+    button.disabled = target === null;
+    button.title = isHere
+      ? `${name} on this frame (${keys})`
+      : `Go to frame ${target}, where there is something to ${direction} (${keys})`;
   }
 
   #tellFit() {
@@ -113,17 +141,8 @@ export class Toolbar {
     part("brush-size-value").textContent = withUnit(this.#editor.brushRadius, 1, "px");
   }
 
-  #setLevels(changed) {
-    let [floorDb, topDb] = [Number(part("floor").value), Number(part("top").value)];
-    if (topDb - floorDb < NARROWEST_DB) {
-      if (changed === "floor") topDb = Math.min(floorDb + NARROWEST_DB, 0);
-      floorDb = Math.min(floorDb, topDb - NARROWEST_DB);
-      part("floor").value = floorDb;
-      part("top").value = topDb;
-    }
-    part("floor-value").textContent = withUnit(floorDb, 0, "dB");
-    part("top-value").textContent = withUnit(topDb, 0, "dB");
-    this.#panel.view.setLevels(floorDb, topDb);
+  #layerButtons() {
+    return document.querySelectorAll(".frame button[data-layer]");
   }
 
   #toolButtons() {

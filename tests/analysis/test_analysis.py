@@ -1,3 +1,4 @@
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -57,6 +58,11 @@ def drag(of, number, random):
         commit(of, number, drawn_silhouette(rings, image_shape=(160, 160), claim="lit side")[0])
 
 
+def take_extraction_back(of, number, random):
+    with suppress(NothingLeft):
+        of.undo_extraction()
+
+
 def undo_or_redo(of, number, random):
     history = of.frame(number).history
     if history.can_undo and (not history.can_redo or random.random() < 0.6):
@@ -108,6 +114,7 @@ OPERATIONS = {
     "end preview": lambda of, n, random: of.end_preview(),
     "receive": lambda of, n, random: of.receive(FRAMES[len(of.frames) % 6]),
     "extract": lambda of, n, random: of.extract_again(ExtractionSettings(closing_px=3)),
+    "extract back": take_extraction_back,
     "rewind": rewind,
 }
 
@@ -199,6 +206,25 @@ def test_extracting_again_keeps_edited_outlines_unless_asked():
     assert not of.frame(2).history.is_edited
     assert of.undo(2, base_revision=2).silhouette is edited
     assert of.frame(2).history.is_edited
+
+
+def test_an_extraction_leaves_alone_what_it_finds_again_and_can_be_taken_back():
+    of = analysis(count=3)
+    assert of.extract_again(ExtractionSettings()) == ()
+    labelled = commit(of, 2, replace(OUTLINES[1], component="boom")).silhouette
+    changed = of.extract_again(ExtractionSettings(closing_px=9), overwrites_edited=True)
+    assert [frame.number for frame in changed] == [1, 2, 3]
+    assert of.frame(2).silhouette.component == "boom"
+    later = commit(of, 3, moved(OUTLINES[2], 1.0)).silhouette
+    assert [frame.number for frame in of.undo_extraction()] == [1, 2]
+    assert of.frame(1).silhouette is OUTLINES[0]
+    assert of.frame(2).silhouette is labelled
+    assert of.frame(3).silhouette is later
+    assert of.settings.extraction == ExtractionSettings()
+    assert_same_hull(of, from_scratch(of))
+    of.undo_extraction()
+    with pytest.raises(NothingLeft, match="no detection in all frames"):
+        of.undo_extraction()
 
 
 def test_an_excluded_frame_does_not_vote_and_says_so():
@@ -307,10 +333,10 @@ def test_several_outlines_are_taken_over_together_or_not_at_all():
     )[0]
     outlined = Outlined(silhouette=square, tool="import")
     with pytest.raises(ValueError, match="There is no frame 9"):
-        work.commit_all({1: outlined, 9: outlined})
+        work.commit_all({1: outlined, 9: outlined}, tool="import")
     assert work.revision == before
     assert not work.frame(1).history.is_edited
-    work.commit_all({1: outlined, 3: outlined})
+    work.commit_all({1: outlined, 3: outlined}, tool="import")
     assert [frame.history.is_edited for frame in work.frames] == [True, False, True]
     assert_same_hull(work, from_scratch(work))
     assert [edit.tool for edit in work.journal] == ["import", "import"]

@@ -9,6 +9,7 @@ import pytest
 
 from app.playback import Playback
 from core.hull.drawing import MOST_VERTICES
+from core.silhouettes.silhouette import clockwise_area_px
 from tests.app.running import running
 from tests.app.synthetic import SETTINGS, source
 
@@ -303,3 +304,32 @@ def test_grabcut_is_for_photographs(page) -> None:
     answer = page.post("/api/frames/1/proposals", json=asked)
     assert answer.status_code == 422
     assert "comes from a radar" in answer.json()["detail"]
+
+
+@pytest.mark.parametrize("label", ["", "  ", "x" * 41, "a\u0007b"])
+def test_a_label_that_nobody_can_read_is_refused(page, label) -> None:
+    refused = put(page, 1, outline(page, 1, component=label))
+    assert refused.status_code == 422
+    assert "A part's label has 1 to 40 printable characters" in refused.json()["detail"]
+
+
+def test_a_label_is_kept_and_listed(page) -> None:
+    shown = put(page, 1, outline(page, 1, component=" solar  panel ")).json()["silhouette"]
+    assert shown["component"] == "solar panel"
+    assert state(page)["frames_info"][0]["component"] == "solar panel"
+    undo(page, 1)
+    assert state(page)["frames_info"][0]["component"] == "target"
+
+
+def test_a_reprojection_tells_by_how_much_it_differs_outside_the_shadow(page) -> None:
+    before = page.get("/api/frames/2/reprojection").json()
+    assert before["overlap"] > 0.8
+    put(page, 2, outline(page, 2, rings=[SQUARE]))
+    lit = page.get("/api/frames/2/reprojection").json()
+    assert lit["outline_revision"] == before["outline_revision"] + 1
+    seen_px = sum(clockwise_area_px(np.array(ring)) for ring in lit["rings"])
+    shared_px = 40.0 * 40.0 - lit["only_outline_px"]
+    # The hull reaches on behind the lit side, where nothing is known, and hardly anywhere else.
+    assert seen_px > shared_px + 20.0
+    assert lit["only_hull_px"] < 0.5 * (seen_px - shared_px)
+    undo(page, 2)

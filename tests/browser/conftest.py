@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, expect, sync_playwright
@@ -11,7 +12,7 @@ from playwright.sync_api import Browser, Page, expect, sync_playwright
 from app.playback import Playback
 from app.source import Source
 from tests.app.running import running
-from tests.app.synthetic import SETTINGS
+from tests.app.synthetic import SETTINGS, source
 from tests.chromium import FLAGS, installed_chromium
 
 PATIENCE_MS = 20_000
@@ -70,3 +71,16 @@ def visit(browser: Browser) -> Iterator[Callable[..., Visit]]:
             return visit
 
         yield open_page
+
+
+@pytest.fixture
+def editing(visit) -> Callable[..., Page]:
+    """Return a function that opens the page with all of so many frames received."""
+
+    def open_page(count: int = 3, **options: Any) -> Page:
+        page = visit(source(count), playing=True, **options).page
+        expect(page.locator("#status")).to_have_text(re.compile(rf"All {count} frames? received"))
+        expect(page.locator("#frame-canvas")).to_have_attribute("data-frame", str(count))
+        return page
+
+    return open_page

@@ -11,9 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from playwright.sync_api import Browser, Page
 from shapely import LineString, MultiPoint, Polygon, is_valid
+from shapely.ops import unary_union
 
 from app.playback import Playback
-from core.silhouettes.silhouette import clockwise_area_px
+from core.hull.shadow import shadow_region
+from core.silhouettes.areas import area_of
+from core.silhouettes.silhouette import Silhouette, clockwise_area_px
 from tests.app.running import running
 from tests.app.synthetic import SETTINGS, source
 
@@ -116,3 +119,15 @@ def test_a_moved_vertex_pulls_only_what_is_in_reach(
     weight = np.where(distance < reach, 0.5 + 0.5 * np.cos(np.pi * distance / max(reach, 1e-9)), 0)
     weight[index] = 1
     np.testing.assert_allclose(moved, before + weight[:, None] * move, atol=1e-9)
+
+
+@EXAMPLES
+@given(ring=stars)
+def test_the_shadow_on_the_page_is_the_one_by_which_the_hull_is_carved(page, ring) -> None:
+    strips = call(page, "shadowStrips", [ring], 79.5)
+    # The canvas joins them by the non-zero rule, so that all must run one way around.
+    assert all(clockwise_area_px(np.array(strip)) > 0 for strip in strips)
+    shown = unary_union([Polygon(strip) for strip in strips]).difference(Polygon(ring))
+    silhouette = Silhouette(rings=(np.array(ring),), image_shape=(80, 80), claim="lit side")
+    wanted = area_of(shadow_region(silhouette))
+    assert shown.symmetric_difference(wanted).area < 1e-6 * wanted.area + 1e-6
