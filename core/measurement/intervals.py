@@ -21,6 +21,9 @@ has the right size but does not settle with more frames, as that of a greatest v
 
 What an interval covers is the number that the same views would give with noise-free outlines. The
 body itself may be smaller than that hull: what no view sees, no interval of its outlines contains.
+Nor does it hold what is carved away where frames err more by themselves than all of them together
+and every view has a veto: of many bounds the tightest then is wrong by more than the interval. An
+extent suffers first; let voxels miss a view or two.
 """
 
 from collections.abc import Sequence
