@@ -78,8 +78,8 @@ class Interval:
     def method(self) -> str:
         """What the interval is, for people to read beside it."""
         return (
-            f"{CONFIDENCE:.0%} interval: outlines ± {self.cells:g} cells, and jackknife leaving "
-            f"out {self.groups} groups of frames in turn, added in quadrature"
+            f"{100 * CONFIDENCE:g} % interval: outlines ± {self.cells:g} cells, and jackknife "
+            f"leaving out {self.groups} groups of frames in turn, added in quadrature"
         )
 
 
@@ -104,7 +104,7 @@ def measured_intervals(
         groups: how many groups of frames are left out in turn; fewer where there are fewer frames.
         grouping: "interleaved", or "consecutive" where neighbours' errors are alike.
         tolerated_misses: as in `ReconstructionSettings`.
-        watch: is told how many of the 3 + groups hulls are done, and may cancel before each.
+        watch: is told how many of the 3 + groups hulls are done, and may cancel between them.
 
     Raises:
         ValueError: fewer than 3 views, an empty hull, or cells that are not positive.

@@ -90,7 +90,7 @@ def resampled(
         cells: by how many pixels outlines are moved.
         groups: positions of the views that are left out together.
         tolerated_misses: a voxel stays while at most this many views miss it, also of fewer views.
-        watch: is told how many hulls are done, and may cancel before each.
+        watch: is told how many hulls are done, and may cancel between them.
 
     Raises:
         ValueError: no views, an outline that cannot vote, or nothing left to vote without a group.

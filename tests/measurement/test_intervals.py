@@ -16,7 +16,7 @@ def test_progress_is_told_and_it_can_be_cancelled():
     assert told == [(done, 6) for done in range(1, 7)]
     assert all(i.low < i.value < i.high and i.is_stated and not i.note for i in intervals)
     assert intervals[0].method == (
-        "95% interval: outlines ± 0.5 cells, and jackknife leaving out 3 groups of frames in "
+        "95 % interval: outlines ± 0.5 cells, and jackknife leaving out 3 groups of frames in "
         "turn, added in quadrature"
     )
     told.clear()
