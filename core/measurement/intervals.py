@@ -23,7 +23,9 @@ What an interval covers is the number that the same views would give with noise-
 body itself may be smaller than that hull: what no view sees, no interval of its outlines contains.
 Nor does it hold what is carved away where frames err more by themselves than all of them together
 and every view has a veto: of many bounds the tightest then is wrong by more than the interval. An
-extent suffers first; let voxels miss a view or two.
+extent suffers first: with own errors four times the common one, 34 % of a span's intervals held it
+(73 % where a voxel may miss three views). Count the frames' own errors into the cells there; the
+intervals then are wider than need be.
 """
 
 from collections.abc import Sequence
