@@ -12,8 +12,9 @@ from core.hull.surface import EMPTY_SURFACE, Surface
 from core.hull.view import View
 from core.hull.volume import VoteVolume
 from core.hull.votes import check_storable
-from core.measurement.extents import Extent, axis_extents, unobserved_direction
+from core.measurement.extents import Extent, axis_extents
 from core.measurement.lines import LineMeasurement, principal_lines
+from core.measurement.observability import unobserved_direction
 from core.registration.centroid import centroid_registered
 from core.registration.registration import RegistrationRule, moved, registered
 from core.silhouettes.extraction import ExtractionSettings, extract_silhouette
@@ -234,7 +235,7 @@ def measures_of(surface: Surface, grid: VoxelGrid, views: Sequence[View]) -> Mea
     return Measures(
         extents=extents,
         lines=principal_lines(surface, LINE_NAMES) if is_closed else (),
-        unobserved=unobserved_direction([view.projection for view in views]) if views else None,
+        unobserved=unobserved_direction(views) if views else None,
     )
 
 

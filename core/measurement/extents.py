@@ -1,4 +1,4 @@
-"""Extents of a hull along the target's axes, and the directions that no view constrains."""
+"""Extents of a hull along the target's axes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,13 +7,10 @@ import numpy as np
 
 from core.arrays import Floats, frozen
 from core.geometry.grid import VoxelGrid
-from core.geometry.projection import Projection
 from core.hull.bounds import confined_widths_m
 from core.hull.surface import Surface
 from core.hull.view import View
-
-UNOBSERVED_SINE = 0.2
-"""A direction is unobserved while every view is blind within about 12° of it."""
+from core.measurement.observability import Grade, observability
 
 CONFINED = 1.1
 """How much wider than measured the views may let a hull be that the grid cuts."""
@@ -27,12 +24,15 @@ class Extent:
         name: what a person calls it.
         value_m: distance between the two supporting planes.
         direction: (3,) unit vector, target frame; its sign means nothing.
-        is_bounded: whether the views limit it; if not, `value_m` is the grid's and no measurement.
+        observability: how well the views constrain lengths along this direction.
+        is_bounded: whether the views limit it; if not, `value_m` is the grid's, or that of views
+            which hardly see it, and no measurement.
     """
 
     name: str
     value_m: float
     direction: Floats
+    observability: Grade
     is_bounded: bool
 
     def __post_init__(self) -> None:
@@ -44,10 +44,11 @@ def axis_extents(
 ) -> tuple[Extent, Extent, Extent]:
     """Return the extents along x, y and z of the target frame.
 
-    A hull that touches no side of the grid is bounded by its views alone. Of one that does, an
-    extent counts as bounded only along an axis where the views without the grid confine the hull
-    to within a tenth of it: a slanted hull that the grid cuts has the grid's extents on every
-    axis that its open direction leans to.
+    An extent along an unobserved direction is not bounded. The others are, by the views alone, of
+    a hull that touches no side of the grid. Of one that does, an extent counts as bounded only
+    along an axis where the views without the grid confine the hull to within a tenth of it: a
+    slanted hull that the grid cuts has the grid's extents on every axis that its open direction
+    leans to.
 
     Args:
         surface: of the hull.
@@ -65,26 +66,16 @@ def axis_extents(
         upper < grid.upper_m - 0.25 * grid.spacing_m
     )
     bounded = [True] * 3 if inside else (confined_widths_m(views) <= CONFINED * widths).tolist()
+    seen = observability(views)
+    grades = [seen.grade(axis) for axis in np.eye(3)]
     x, y, z = (
         Extent(
             name=name,
             value_m=float(widths[axis]),
             direction=np.eye(3)[axis],
-            is_bounded=bounded[axis],
+            observability=grades[axis],
+            is_bounded=bounded[axis] and grades[axis] != "unobserved",
         )
         for axis, name in enumerate(("x along-track", "y cross-track", "z nadir"))
     )
     return x, y, z
-
-
-def unobserved_direction(projections: Sequence[Projection]) -> Floats | None:
-    """Return the (3,) unit direction that no image plane contains well, or None if all are seen.
-
-    Every affine image is blind along its viewing direction; if all views are blind along nearly
-    the same line (the image planes of one pass nearly coincide), the hull is open along it.
-    """
-    blind = np.array([projection.viewing_direction() for projection in projections])
-    _, vectors = np.linalg.eigh(blind.T @ blind)
-    direction: Floats = vectors[:, 2]
-    sine = np.linalg.norm(np.cross(blind, direction), axis=1)
-    return direction if float(sine.max()) < UNOBSERVED_SINE else None

@@ -6,8 +6,9 @@ from core.geometry.projection import range_doppler_projection
 from core.hull.surface import hull_surface, mask_surface
 from core.hull.view import View
 from core.hull.volume import VoteVolume
-from core.measurement.extents import axis_extents, unobserved_direction
+from core.measurement.extents import axis_extents
 from core.silhouettes.silhouette import Silhouette, clockwise_area_px
+from tests.measurement.test_observability import square_view
 
 GRID = VoxelGrid.cube(side_m=8.0, spacing_m=0.25)
 
@@ -18,32 +19,16 @@ def box(lower_m, upper_m):
 
 
 def test_extents_are_the_boxes_sides():
-    extents = axis_extents(box([-3, -2, -1], [3, 2, 1.5]), GRID, [])
+    views = [square_view([0, 0, 1]), square_view([0, 1, 0])]
+    extents = axis_extents(box([-3, -2, -1], [3, 2, 1.5]), GRID, views)
     assert [extent.value_m for extent in extents] == pytest.approx([6, 4, 2.5])
-    assert all(extent.is_bounded for extent in extents)
+    assert all(extent.is_bounded and extent.observability == "good" for extent in extents)
 
 
-def projections(normals):
-    return [
-        range_doppler_projection(
-            line_of_sight=np.cross(normal, [0.3, 0.5, 0.8])
-            / np.linalg.norm(np.cross(normal, [0.3, 0.5, 0.8])),
-            line_of_sight_rate_per_s=np.cross(normal, np.cross(normal, [0.3, 0.5, 0.8])),
-            row_spacing_m=0.1,
-            column_spacing_m=0.1,
-            shape=(64, 64),
-        )
-        for normal in np.asarray(normals, float)
-    ]
-
-
-def test_planes_that_nearly_coincide_leave_their_normal_unobserved():
-    direction = unobserved_direction(projections([[0, 0, 1], [0, 0.1, 1], [0.1, 0, 1]]))
-    assert abs(direction[2]) > 0.99
-
-
-def test_two_planes_at_an_angle_observe_everything():
-    assert unobserved_direction(projections([[0, 0, 1], [0, 1, 0]])) is None
+def test_an_unobserved_extent_is_not_bounded_even_within_the_grid():
+    extents = axis_extents(box([-3, -2, -1], [3, 2, 1.5]), GRID, [square_view([0, 0, 1])] * 2)
+    assert [extent.is_bounded for extent in extents] == [True, True, False]
+    assert [extent.observability for extent in extents] == ["good", "good", "unobserved"]
 
 
 def test_an_empty_hull_has_no_extents():
@@ -86,9 +71,3 @@ def test_an_open_hull_is_measured_only_where_no_grid_can_change_it():
     assert small[0].value_m == pytest.approx(large[0].value_m)
     assert small[0].value_m == pytest.approx(3.0, abs=0.25)
     assert small[1].value_m < large[1].value_m - 1
-
-
-def test_one_view_across_observes_what_the_others_do_not():
-    many = [[0, 0, 1]] * 30
-    assert unobserved_direction(projections(many)) is not None
-    assert unobserved_direction(projections([*many, [0, 1, 0]])) is None
