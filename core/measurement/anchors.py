@@ -256,7 +256,8 @@ def freeze_direction(owner: object, name: str) -> None:
 
 def check_length(owner: object, name: str, *, least: float | None = None) -> None:
     """Refuse a field of a dataclass that is no length in metres: above zero, or from `least` on."""
-    value = getattr(owner, name)
+    value = float(getattr(owner, name))
+    object.__setattr__(owner, name, value)
     fits = np.isfinite(value) and (value > 0 if least is None else value >= least)
     if not fits:
         wanted = "above zero" if least is None else f"of at least {least:g} m"

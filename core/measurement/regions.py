@@ -80,6 +80,7 @@ class Patch:
         check_length(self, "reach_m")
         if self.radius_m is not None:
             check_length(self, "radius_m")
+        object.__setattr__(self, "angle_rad", float(self.angle_rad))
         if not 0 < self.angle_rad <= np.pi:
             raise ValueError(f"Patch's angle lies above 0 and up to π, got {self.angle_rad} rad.")
         if self.growth not in ("flat", "smooth"):

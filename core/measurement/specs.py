@@ -1,5 +1,6 @@
 """What can be measured: each a plain description that any later hull can be measured by."""
 
+import unicodedata
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -26,7 +27,7 @@ class _Named:
 
     def __post_init__(self) -> None:
         _check_text(self.name, "name", MAX_NAME)
-        _check_text(self.note, "note", MAX_NOTE)
+        _check_text(self.note, "note", MAX_NOTE, allowed="\n\t")
         if not self.name.strip():
             raise ValueError("A measurement needs a name; got an empty one.")
 
@@ -226,8 +227,10 @@ def check_specs(specs: tuple[Spec, ...]) -> None:
                     )
 
 
-def _check_text(text: str, what: str, most: int) -> None:
+def _check_text(text: str, what: str, most: int, allowed: str = "") -> None:
     if not isinstance(text, str):
         raise ValueError(f"A measurement's {what} is text, got {text!r}.")
+    if any(unicodedata.category(c) in ("Cc", "Cs") and c not in allowed for c in text):
+        raise ValueError(f"A measurement's {what} holds a control character: {text[:40]!r}.")
     if len(text) > most:
         raise ValueError(f"A measurement's {what} has at most {most} characters, got {len(text)}.")
