@@ -148,3 +148,69 @@ def _panel(
     panel.apply_transform(trimesh.transformations.rotation_matrix(tilt_rad, [0, 1, 0]))
     panel.apply_translation([x_m, side * (tip_m + inner) / 2, 0.0])
     return panel
+
+
+MRO_LINES: tuple[tuple[str, float, tuple[float, float, float]], ...] = (
+    ("l1", 27.69, (-0.97, 0.26, 0.0)),
+    ("l2", 58.12, (1.0, 0.0, 0.0)),
+    ("l3", 15.88, (0.0, 0.0, 1.0)),
+)
+"""Name, length in metres and attitude of the line features of the paper's Table 2."""
+
+
+def mro_like() -> Target:
+    """Return an orbiter like the Mars Reconnaissance Orbiter with three known tip-to-tip lines.
+
+    l1 is a sounder's boom across the bottom of the bus, from end to end; l2 reaches from the tip of
+    one solar panel to that of the other; l3 from the end of the feed before the dish to the end of
+    the engine's nozzle below. A star tracker on one side tells it from its mirror image.
+
+    Source: lengths and attitudes are those of the paper's Table 2; all shapes are ours.
+    """
+    (_, boom_m, boom), (_, span_m, _), (_, height_m, _) = MRO_LINES
+    side_m, top_m = 5.0, height_m / 2
+    rim_m = top_m - 2.4
+    parts = [
+        _block((0, 0, -1.2), (side_m, side_m, 6.4)),
+        _block((side_m / 2 + 0.5, 1.4, -3.0), (1.4, 1.0, 1.0)),
+        _turned([(0.0, 2.0), (1.0, 2.0), (4.6, rim_m), (4.6, rim_m + 0.15), (0.0, 2.6)]),
+        _turned([(0.0, 2.0), (0.3, 2.0), (0.3, top_m), (0.0, top_m)]),
+        _turned([(0.0, -top_m), (0.5, -top_m), (0.3, -4.0), (0.0, -4.0)]),
+        _rod(np.array(boom), boom_m, radius_m=0.25, centre_m=np.array([0.0, 0.0, -4.2])),
+    ]
+    for sign in (-1, 1):
+        inner, outer = 0.45 * side_m, span_m / 2
+        parts.append(_block((sign * (inner + 6.0) / 2, 0, 0), (6.0 - inner, 0.6, 0.6)))
+        parts.append(_block((sign * (6.0 + outer) / 2, 0, 0), (outer - 6.0, 5.2, 0.4)))
+    return Target(
+        name="MRO-like orbiter",
+        parts=tuple(parts),
+        features=tuple(
+            LineFeature(name=name, length_m=length_m, direction=np.array(direction))
+            for name, length_m, direction in MRO_LINES
+        ),
+    )
+
+
+def _block(
+    centre_m: tuple[float, float, float], sizes_m: tuple[float, float, float]
+) -> trimesh.Trimesh:
+    block = trimesh.creation.box(extents=sizes_m)
+    block.apply_translation(centre_m)
+    return block
+
+
+def _turned(outline_m: list[tuple[float, float]]) -> trimesh.Trimesh:
+    """Return the body that (radius, height) points sweep about z, from the axis and back to it."""
+    return trimesh.creation.revolve(np.array(outline_m), sections=64)
+
+
+def _rod(
+    direction: Floats, length_m: float, *, radius_m: float, centre_m: Floats
+) -> trimesh.Trimesh:
+    rod = trimesh.creation.cylinder(radius=radius_m, height=length_m, sections=48)
+    rod.apply_transform(
+        trimesh.geometry.align_vectors([0, 0, 1], direction / np.linalg.norm(direction))
+    )
+    rod.apply_translation(centre_m)
+    return rod

@@ -21,8 +21,10 @@ from core.hull.threads import Compiled, InnerLoop
 ORDER_VOXELS = 32
 """Voxels along z for which one order of the views is kept: neighbours end at the same views."""
 
-MOST_EVENTS = 64
-"""Outline crossings of one grid edge that are looked at; more would need a crossing per 1/64."""
+EVENTS_PER_VIEW = 4
+LEAST_EVENTS = 64
+"""Outline crossings of one grid edge that are looked at: room for four of each view, and for 64
+in all. Beyond a far end hundreds of views may each cross the same edge."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -112,6 +114,7 @@ def cross_grid_edges(
             grid's end.
     """
     vertices, causes = np.empty((len(crossed), 3)), np.full((len(crossed), 2), -1, dtype=np.int32)
+    room = max(LEAST_EVENTS, EVENTS_PER_VIEW * len(to_image))
     _cross_all(
         crossed,
         votes,
@@ -127,9 +130,9 @@ def cross_grid_edges(
         causes,
         _orders(votes.shape[2] // ORDER_VOXELS + 2, len(to_image)),
         np.empty((2, 3)),
-        np.empty(MOST_EVENTS),
-        np.empty(MOST_EVENTS, dtype=np.int64),
-        np.empty((MOST_EVENTS, 2), dtype=np.int32),
+        np.empty(room),
+        np.empty(room, dtype=np.int64),
+        np.empty((room, 2), dtype=np.int32),
     )
     return vertices, causes
 
@@ -287,7 +290,7 @@ def _collect(
                 qr, qc, qw = _project(to_image, view, outer[0], outer[1], outer[2])
                 pr, pc, qr, qc = pr / pw, pc / pw, qr / qw, qc / qw
             part, step = _cross_edge(points, edge, pr, pc, pw, qr, qc, qw)
-            if step != 0 and count < MOST_EVENTS:
+            if step != 0 and count < len(event_at):
                 _insert(event_at, event_step, event_cause, count, part, step, view, edge)
                 count += 1
                 net += step

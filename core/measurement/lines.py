@@ -45,7 +45,7 @@ def principal_lines(surface: Surface, names: tuple[str, str, str]) -> tuple[Line
     """
     if surface.is_empty:
         raise ValueError("The hull is empty, so nothing can be measured; lower the threshold.")
-    _, axes = np.linalg.eigh(_covariance(surface))
+    _, axes = np.linalg.eigh(body_covariance_m5(surface)[1])
     extents = np.ptp(surface.vertices_m @ axes, axis=0)
     order = np.argsort(extents)[::-1]
     return tuple(
@@ -54,20 +54,29 @@ def principal_lines(surface: Surface, names: tuple[str, str, str]) -> tuple[Line
     )
 
 
-def _covariance(surface: Surface) -> Floats:
-    """Return the (3, 3) second moments of the enclosed body about its centroid, in m⁵.
+def body_covariance_m5(surface: Surface) -> tuple[Floats, Floats]:
+    """Return a closed body's centroid (3,) in metres and its second moments about it, (3, 3) in m⁵.
 
-    Its eigenvectors are the principal axes of inertia.
+    The eigenvectors of the moments are the principal axes of inertia.
+
+    Raises:
+        ValueError: the surface encloses nothing.
     """
-    points = surface.vertices_m - surface.vertices_m.mean(axis=0)
+    middle = surface.vertices_m.mean(axis=0)
+    points = surface.vertices_m - middle
     a, b, c = (points[surface.faces[:, corner]] for corner in range(3))
     sixfold = np.einsum("ij,ij->i", a, np.cross(b, c))
     total = a + b + c
     corners = (a, b, c, total)
     about_mean = sum(part.T @ (part * sixfold[:, None]) for part in corners) / 120
     volume, moment = sixfold.sum() / 6, sixfold @ total / 24
+    if not volume > 0:
+        raise ValueError(
+            f"The surface encloses {volume:.3g} m³, so it has no centroid; it must be closed and "
+            "its faces run counter-clockwise as seen from outside."
+        )
     covariance: Floats = about_mean - np.outer(moment, moment) / volume
-    return covariance
+    return middle + moment / volume, covariance
 
 
 def angle_between_lines_rad(first: Floats, second: Floats) -> float:

@@ -1,0 +1,316 @@
+"""Measurements as JSON and CSV, out and in again unchanged.
+
+Both hold the specs, by which a hull is measured anew, and the readings that were taken. In CSV one
+row is one measurement; what only the spec knows is JSON in its last column.
+"""
+
+import csv
+import io
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from core.arrays import Floats, frozen
+from core.formats.files import checked_output, reason, written_aside
+from core.formats.measurement_fields import decoded, encoded
+from core.geometry.directions import FRAME_NAMES, Direction, FrameName
+from core.measurement.results import Measurement
+from core.measurement.specs import Spec, check_specs
+
+FORMAT = "radarhull measurements"
+VERSION = 1
+MEASUREMENT_SUFFIXES = (".json", ".csv")
+MAX_BYTES = 16 * 2**20
+MAX_MEASUREMENTS = 10_000
+UNITS = ("m", "m²", "m³", "rad", "")
+
+COLUMNS = (
+    *("version", "kind", "name", "value", "unit", "low", "high", "x", "y", "z", "frame"),
+    *("epoch_utc", "undirected", "revision", "threshold", "note", "spec"),
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Reading:
+    """What a measurement read when it was written.
+
+    Attributes:
+        value: in `unit`.
+        unit: "m", "m²", "m³", "rad" or empty.
+        low, high: ends of its interval, in `unit`; both None where there is none.
+        direction: (3,) attitude vector in `frame`, None where there is none.
+        frame: in which the direction is given.
+        epoch_utc: ISO 8601 time at which an inertial direction holds, empty for other frames.
+        is_undirected: whether the direction's sign means nothing.
+        revision: of the hull.
+        threshold: votes that a voxel of that hull has at least.
+    """
+
+    value: float
+    unit: str
+    low: float | None = None
+    high: float | None = None
+    direction: Floats | None = None
+    frame: FrameName = "target"
+    epoch_utc: str = ""
+    is_undirected: bool = False
+    revision: int = 0
+    threshold: int = 0
+
+    def __post_init__(self) -> None:
+        for name in ("value", "low", "high"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, float(getattr(self, name)))
+        if not np.isfinite(self.value):
+            raise ValueError(f"the value must be a finite number, got {self.value}")
+        if self.unit not in UNITS:
+            raise ValueError(f'the unit must be one of {", ".join(UNITS[:-1])}, got "{self.unit}"')
+        if self.frame not in FRAME_NAMES:
+            raise ValueError(
+                f'the frame must be one of {", ".join(FRAME_NAMES)}, got "{self.frame}"'
+            )
+        if (self.frame == "TEME") != bool(self.epoch_utc):
+            raise ValueError("a direction in TEME, and no other, has an epoch")
+        self._check_interval()
+        if self.direction is not None:
+            direction = frozen(self.direction, np.float64, (3,), "the direction")
+            object.__setattr__(self, "direction", direction)
+
+    def _check_interval(self) -> None:
+        if (self.low is None) != (self.high is None):
+            raise ValueError("an interval has both its ends or none")
+        if self.low is not None and self.high is not None and not self.low <= self.high:
+            raise ValueError(f"an interval's low end {self.low} lies below its high {self.high}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Entry:
+    """A measurement as files hold it.
+
+    Attributes:
+        spec: how it is measured.
+        reading: what it last read, None if it has not been measured or is lost.
+    """
+
+    spec: Spec
+    reading: Reading | None = None
+
+
+def reading_of(
+    measurement: Measurement,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+    direction: Direction | None = None,
+    frame: FrameName = "target",
+) -> Reading:
+    """Return a measurement's reading, its direction in a frame of choice.
+
+    Args:
+        measurement: what was measured.
+        low: its interval's lower end.
+        high: its interval's upper end.
+        direction: the measurement's, in all frames; needed for others than the target's.
+        frame: in which to give it.
+
+    Raises:
+        ValueError: a frame that needs an orbit where none is known.
+    """
+    vector = measurement.direction
+    if vector is not None and frame != "target":
+        vector = (direction or Direction(target=vector)).in_frame(frame)
+    return Reading(
+        value=measurement.value,
+        unit=measurement.unit,
+        low=low,
+        high=high,
+        direction=vector,
+        frame=frame,
+        epoch_utc=direction.epoch_utc if direction and frame == "TEME" else "",
+        is_undirected=measurement.is_undirected,
+        revision=measurement.revision,
+        threshold=measurement.threshold,
+    )
+
+
+def measurements_to_json(entries: Sequence[Entry]) -> str:
+    """Return measurements as JSON text."""
+    check_specs(tuple(entry.spec for entry in entries))
+    rows = [
+        {**encoded(entry.spec), "reading": _reading_to_json(entry.reading)} for entry in entries
+    ]
+    content = {"format": FORMAT, "version": VERSION, "measurements": rows}
+    return json.dumps(content, ensure_ascii=False, indent=1, allow_nan=False) + "\n"
+
+
+def measurements_from_json(text: str) -> tuple[Entry, ...]:
+    """Return the measurements of a JSON text.
+
+    Raises:
+        ValueError: no such text, another version, unknown kinds, fields or frames, numbers that
+            are none, two measurements of one name, or one that refers to a name that is missing.
+    """
+    content = _parsed(text, "The file")
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise ValueError(f'The file holds no measurements: its "format" is not "{FORMAT}".')
+    _check_version(content.get("version"))
+    rows = content.get("measurements")
+    if not isinstance(rows, list):
+        raise ValueError('The file holds no list of "measurements".')
+    return _checked([_entry(row, f"Measurement {i}") for i, row in enumerate(rows, start=1)])
+
+
+def measurements_to_csv(entries: Sequence[Entry]) -> str:
+    """Return measurements as CSV text, one row each, below a row of headings."""
+    check_specs(tuple(entry.spec for entry in entries))
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for entry in entries:
+        spec = encoded(entry.spec)
+        common = [spec.pop(name) for name in ("kind", "name", "note")]
+        reading = _reading_to_json(entry.reading)
+        vector = [None] * 3 if reading is None else reading["direction"] or [None] * 3
+        cells = [] if reading is None else [reading[name] for name in _BEFORE]
+        after = [None] * 5 if reading is None else [reading[name] for name in _AFTER]
+        details = json.dumps(spec, ensure_ascii=False, allow_nan=False)
+        numbers = (cells or [None] * 4) + vector + after
+        writer.writerow([VERSION, *common[:2], *map(_cell, numbers), common[2], details])
+    return text.getvalue()
+
+
+_BEFORE = ("value", "unit", "low", "high")
+_AFTER = ("frame", "epoch_utc", "is_undirected", "revision", "threshold")
+
+
+def measurements_from_csv(text: str) -> tuple[Entry, ...]:
+    """Return the measurements of a CSV text, exactly those that were written.
+
+    Raises:
+        ValueError: as `measurements_from_json`, or other columns.
+    """
+    try:
+        rows = list(csv.reader(io.StringIO(text, newline=""), strict=True))
+    except csv.Error as error:
+        raise ValueError(f"The file is no CSV that can be read: {error}.") from error
+    if not rows or tuple(rows[0]) != COLUMNS:
+        raise ValueError(f"The first row must hold the headings {','.join(COLUMNS)}.")
+    return _checked([_row_entry(row, i) for i, row in enumerate(rows[1:], start=2) if row])
+
+
+def write_measurements(path: Path, entries: Sequence[Entry]) -> None:
+    """Write measurements to a .json or .csv file, whole or not at all.
+
+    Raises:
+        ValueError: another ending, a path that cannot be written, or names that clash.
+    """
+    checked_output(path, MEASUREMENT_SUFFIXES)
+    is_csv = path.suffix.lower() == ".csv"
+    text = measurements_to_csv(entries) if is_csv else measurements_to_json(entries)
+    with written_aside(path) as aside:
+        aside.write_bytes(text.encode())
+
+
+def read_measurements(path: Path) -> tuple[Entry, ...]:
+    """Read measurements from a .json or .csv file: all of them or none.
+
+    Raises:
+        ValueError: another ending, a file that cannot be read or is too large, or as
+            `measurements_from_json`.
+    """
+    if path.suffix.lower() not in MEASUREMENT_SUFFIXES:
+        raise ValueError(f'A file of measurements ends in .json or .csv; got "{path.name}".')
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise ValueError(f"{path.name} is larger than {MAX_BYTES >> 20} MiB.")
+        text = path.read_bytes().decode()
+    except OSError as error:
+        raise ValueError(f"{path} could not be read: {reason(error)}.") from error
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path.name} is no text in UTF-8: {error.reason}.") from error
+    is_csv = path.suffix.lower() == ".csv"
+    return measurements_from_csv(text) if is_csv else measurements_from_json(text)
+
+
+def _checked(entries: list[Entry]) -> tuple[Entry, ...]:
+    if len(entries) > MAX_MEASUREMENTS:
+        raise ValueError(
+            f"The file holds {len(entries)} measurements; at most {MAX_MEASUREMENTS} are read."
+        )
+    check_specs(tuple(entry.spec for entry in entries))
+    return tuple(entries)
+
+
+def _entry(row: object, where: str) -> Entry:
+    if not isinstance(row, dict):
+        raise ValueError(f"{where} is no object with a kind and a name.")
+    spec = {name: value for name, value in row.items() if name != "reading"}
+    found = decoded(spec, Spec, where)
+    return Entry(spec=found, reading=_reading(row.get("reading"), f'{where}, "{found.name}"'))
+
+
+def _reading_to_json(reading: Reading | None) -> dict[str, Any] | None:
+    return None if reading is None else encoded(reading)
+
+
+def _reading(row: object, where: str) -> Reading | None:
+    return None if row is None else decoded(row, Reading, f"{where}: its reading")
+
+
+def _row_entry(cells: list[str], line: int) -> Entry:
+    where = f"Row {line}"
+    if len(cells) != len(COLUMNS):
+        raise ValueError(f"{where} has {len(cells)} cells for {len(COLUMNS)} columns.")
+    row = dict(zip(COLUMNS, cells, strict=True))
+    _check_version(row["version"])
+    details = _parsed(row["spec"], f"{where}, column spec,")
+    if not isinstance(details, dict) or {"kind", "name", "note", "reading"} & set(details):
+        raise ValueError(f"{where}, column spec, holds no object of the spec's own fields.")
+    common = {name: row[name] for name in ("kind", "name", "note")}
+    return _entry({**common, **details, "reading": _row_reading(row, where)}, where)
+
+
+def _row_reading(row: dict[str, str], where: str) -> dict[str, Any] | None:
+    if not any(row[name] for name in COLUMNS[3:15]):
+        return None
+    numbers = {
+        name: None if row[name] == "" else _parsed(row[name], f"{where}, column {name},")
+        for name in ("value", "low", "high", "x", "y", "z", "undirected", "revision", "threshold")
+    }
+    vector = [numbers.pop(axis) for axis in "xyz"]
+    numbers["is_undirected"] = numbers.pop("undirected")
+    numbers["direction"] = None if vector == [None] * 3 else vector
+    return numbers | {name: row[name] for name in ("unit", "frame", "epoch_utc")}
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, str):
+        return value
+    return "" if value is None else json.dumps(value, allow_nan=False)
+
+
+def _check_version(version: object) -> None:
+    if str(version) != str(VERSION):
+        raise ValueError(f"The file is of version {version}; this program reads version {VERSION}.")
+
+
+def _parsed(text: str, where: str) -> Any:
+    try:
+        return json.loads(text, parse_constant=_refuse, object_pairs_hook=_no_twice)
+    except (json.JSONDecodeError, RecursionError) as error:
+        raise ValueError(f"{where} is no JSON that can be read: {error}.") from error
+
+
+def _refuse(constant: str) -> float:
+    raise ValueError(f"The file holds {constant}; every number must be finite.")
+
+
+def _no_twice(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise ValueError("The file gives a field twice: " + ", ".join(name for name, _ in pairs))
+    return found
