@@ -121,7 +121,7 @@ def factorize(tracks: Floats, *, robust: bool = False) -> Factorization:
     count = len(frames)
     residual = fit.residual(np.where(weights > 0, rows, 0))[:count]
     k, d = (part @ metric.upgrade for part in (fit.motion[:count], fit.motion[count:]))
-    shape: Floats = np.linalg.solve(metric.upgrade, fit.shape.T).T
+    shape = fit.shape @ np.linalg.inv(metric.upgrade).astype(np.float64).T
     scale = np.linalg.norm(d, axis=1)
     return Factorization(
         shape_m=shape,

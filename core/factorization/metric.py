@@ -54,7 +54,7 @@ def solve_metric(range_rows: Floats, doppler_rows: Floats) -> Metric:
     system = np.concatenate([_quadratic(rows, rows), _quadratic(rows, unit_rows)])
     wanted = np.concatenate([np.ones(len(rows)), np.zeros(len(rows))])
     entries, _, _, size = np.linalg.lstsq(system, wanted, rcond=None)
-    factor: Floats = np.linalg.cholesky(_positive_definite(entries))
+    factor = np.asarray(np.linalg.cholesky(_positive_definite(entries)), dtype=np.float64)
 
     def left_over(values: NDArray[np.float64]) -> Floats:
         return _left_over(_lower(values), rows, unit_rows)
