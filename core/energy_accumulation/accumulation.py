@@ -128,33 +128,39 @@ def _add_plane(
     plane: Map, x: int, image: Map, matrix: Floats, window: Floats, sign: np.float32
 ) -> None:  # pragma: no cover - compiled
     """Add an image's samples to one plane (ny, nz) of the map."""
-    rows, columns = image.shape
+    top, bottom, left, right = window
     row_step, column_step = matrix[0, 2], matrix[1, 2]
+    # A step of next to nothing keeps its place: the division then leaves all z, or none.
+    per_row = 1 / row_step if abs(row_step) > 1e-12 else 1e12
+    per_column = 1 / column_step if abs(column_step) > 1e-12 else 1e12
     for y in range(plane.shape[0]):
         row_0 = matrix[0, 0] * x + matrix[0, 1] * y + matrix[0, 3]
         column_0 = matrix[1, 0] * x + matrix[1, 1] * y + matrix[1, 3]
         # The stretch of z whose row and column lie inside the window, a voxel too long …
-        low, high = 0.0, plane.shape[1] - 1.0
-        for place, step, least, most in (
-            (row_0, row_step, window[0], window[1]),
-            (column_0, column_step, window[2], window[3]),
-        ):
-            if abs(step) > 1e-12:
-                one, other = (least - place) / step, (most - place) / step
-                low, high = max(low, min(one, other) - 1), min(high, max(one, other) + 1)
-            elif place < least - 1e-6 or place > most + 1e-6:
-                high = -1.0
+        one, other = (top - row_0) * per_row, (bottom - row_0) * per_row
+        low, high = max(0.0, min(one, other) - 1), min(plane.shape[1] - 1.0, max(one, other) + 1)
+        one, other = (left - column_0) * per_column, (right - column_0) * per_column
+        low, high = max(low, min(one, other) - 1), min(high, max(one, other) + 1)
         if high < low:
             continue
-        for z in range(int(low), int(high) + 1):
+        first, last = int(low), int(high)
+        # … so that its ends are drawn in. On the window's last row and column the image is zero.
+        while first <= last and not (
+            top <= row_0 + row_step * first < bottom
+            and left <= column_0 + column_step * first < right
+        ):
+            first += 1
+        while first <= last and not (
+            top <= row_0 + row_step * last < bottom
+            and left <= column_0 + column_step * last < right
+        ):
+            last -= 1
+        for z in range(first, last + 1):
             row, column = row_0 + row_step * z, column_0 + column_step * z
-            # … so that each sample is still checked.
-            if row < window[0] or row > window[1] or column < window[2] or column > window[3]:
-                continue
-            i, j = min(int(row), rows - 2), min(int(column), columns - 2)
-            down, right = np.float32(row - i), np.float32(column - j)
-            above = image[i, j] + right * (image[i, j + 1] - image[i, j])
-            below = image[i + 1, j] + right * (image[i + 1, j + 1] - image[i + 1, j])
+            i, j = int(row), int(column)
+            down, across = np.float32(row - i), np.float32(column - j)
+            above = image[i, j] + across * (image[i, j + 1] - image[i, j])
+            below = image[i + 1, j] + across * (image[i + 1, j + 1] - image[i + 1, j])
             plane[y, z] += sign * (above + down * (below - above))
 
 

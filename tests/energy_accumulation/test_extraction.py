@@ -15,7 +15,7 @@ GRID = VoxelGrid.cube(side_m=8.0, spacing_m=0.25)
 SEEDS = st.integers(0, 2**32 - 1)
 
 
-@settings(max_examples=10)
+@settings(max_examples=5)
 @given(seed=SEEDS)
 def test_scattered_points_are_found_one_by_one(seed):
     random = np.random.default_rng(seed)
@@ -29,7 +29,7 @@ def test_scattered_points_are_found_one_by_one(seed):
     assert found.voxels(GRID).sum() == 6
 
 
-@settings(max_examples=10)
+@settings(max_examples=6)
 @given(seed=SEEDS)
 def test_the_map_follows_what_is_taken_out(seed):
     random = np.random.default_rng(seed)
