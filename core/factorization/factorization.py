@@ -21,6 +21,9 @@ LEAST_POINTS = 4
 LEAST_RATIO = 1e-6
 """Singular values apart by more are zero in what double precision can tell."""
 
+UNCERTAIN = 3.0
+"""Points more uncertain than the median by this factor say nothing about centroid and rank."""
+
 NOISE_MARGIN = 3.0
 """A third singular value within this many times the noise's own greatest is noise."""
 
@@ -52,8 +55,11 @@ class Factorization:
             the rotation rate in rad/s where the tracks hold range rates.
         translation: (frames used, 2) image of the centroid, in the tracks' units.
         frames: (frames used,) their numbers; a frame needs four points.
+        uncertainty_m: (points found,) standard deviation of the distance from the true place, the
+            motion taken as exact; a point seen in two like frames has a large one.
         range_rms_m: of the ranges left over.
-        rank_ratio: third over first singular value of the tracks, gaps filled by the fit.
+        rank_ratio: third over first singular value of the tracks, gaps filled by the fit, points
+            much less certain than most left out.
         metric_ratio: least over greatest singular value of the metric constraints.
     """
 
@@ -64,6 +70,7 @@ class Factorization:
     cross_range_scale: Floats
     translation: Floats
     frames: NDArray[np.int64]
+    uncertainty_m: Floats
     range_rms_m: float
     rank_ratio: float
     metric_ratio: float
@@ -78,11 +85,14 @@ class Factorization:
             ("cross_range_scale", np.float64, (frames,)),
             ("translation", np.float64, (frames, 2)),
             ("frames", np.int64, (frames,)),
+            ("uncertainty_m", np.float64, (points,)),
         ):
             object.__setattr__(self, name, frozen(getattr(self, name), dtype, shape, name))
 
 
-def factorize(tracks: Floats, *, robust: bool = False) -> Factorization:
+def factorize(
+    tracks: Floats, *, robust: bool = False, even_if_ambiguous: bool = False
+) -> Factorization:
     """Recover shape and motion from tracks of scatterers through range-Doppler images.
 
     Range k·p + t and Doppler s u·p + t' of all points are rows of a matrix of rank three, once
@@ -97,9 +107,13 @@ def factorize(tracks: Floats, *, robust: bool = False) -> Factorization:
         tracks: (frames, points, 2): range in metres, and cross-range or Doppler, each frame in a
             unit of its own but with its sign along dk/dt; NaN where a point is missing.
         robust: weigh points that fit badly less (Cauchy's loss) instead of by least squares.
+        even_if_ambiguous: give the best shape, as the published algorithm does, where noise leaves
+            room for others; for comparisons only.
 
     Raises:
-        UnobservableShape: more than one shape fits.
+        UnobservableShape: more than one shape fits. One pass of one station is such a case: its
+            lines of sight almost keep to one cone, and a tenth of a millimetre of noise hides
+            the rest.
         ValueError: tracks of another shape, or too few points seen together.
 
     Source: Tomasi and Kanade, 1992, with the constraints of `core.factorization.metric`; as a
@@ -116,8 +130,9 @@ def factorize(tracks: Floats, *, robust: bool = False) -> Factorization:
     weights = np.concatenate([known, known]).astype(np.float64)
     fit = _fitted(rows, weights, robust=robust)
     noise = _noise(fit, rows, weights, robust=robust)
-    rank_ratio, fit = _ranked(fit, noise, float(known.mean()))
-    metric = _checked_metric(fit, noise, float(known.mean()))
+    doubt = 0.0 if even_if_ambiguous else noise
+    rank_ratio, fit = _ranked(fit, doubt, weights)
+    metric = _checked_metric(fit, doubt, weights)
     count = len(frames)
     residual = fit.residual(np.where(weights > 0, rows, 0))[:count]
     k, d = (part @ metric.upgrade for part in (fit.motion[:count], fit.motion[count:]))
@@ -133,6 +148,7 @@ def factorize(tracks: Floats, *, robust: bool = False) -> Factorization:
             [fit.translation[:count], fit.translation[count:] * doppler_unit]
         ),
         frames=frames,
+        uncertainty_m=noise * _dilution(fit.motion @ metric.upgrade, weights),
         range_rms_m=float(np.sqrt(np.mean(residual[known] ** 2))),
         rank_ratio=rank_ratio,
         metric_ratio=metric.singular_ratio,
@@ -205,17 +221,27 @@ def _noise(fit: AffineFit, rows: Floats, weights: Floats, *, robust: bool) -> fl
     return float(spread / np.sqrt(max(freedom, 0.05)))
 
 
-def _ranked(fit: AffineFit, noise: float, share: float) -> tuple[float, AffineFit]:
+def _dilution(motion: Floats, weights: Floats) -> Floats:
+    """Return by how much each point's place (points,) is less certain than one of its rows."""
+    normal = np.einsum("rj,ra,rb->jab", weights, motion, motion, optimize=True)
+    spread = np.trace(np.linalg.pinv(normal, hermitian=True), axis1=1, axis2=2)
+    return np.asarray(np.sqrt(spread), dtype=np.float64)
+
+
+def _ranked(fit: AffineFit, noise: float, weights: Floats) -> tuple[float, AffineFit]:
     """Return the singular values' ratio, and the fit in the frame of its singular vectors.
 
     Raises:
         UnobservableShape: the third does not stand out of the noise.
     """
-    centroid = fit.shape.mean(axis=0)
     outer, upper = np.linalg.qr(fit.motion)
-    left, size, right = np.linalg.svd(upper @ (fit.shape - centroid).T, full_matrices=False)
-    count, points = len(fit.motion), len(fit.shape)
-    noise_size = noise * (np.sqrt(count) + np.sqrt(points)) / np.sqrt(share)
+    dilution = _dilution(outer, weights)
+    certain = dilution <= UNCERTAIN * np.median(dilution)
+    centroid = fit.shape[certain].mean(axis=0)
+    points = upper @ (fit.shape - centroid).T
+    left, size, _ = np.linalg.svd(points[:, certain], full_matrices=False)
+    count, share = len(fit.motion), float(np.mean(weights > 0))
+    noise_size = noise * (np.sqrt(count) + np.sqrt(certain.sum())) / np.sqrt(share)
     if size[2] < max(NOISE_MARGIN * noise_size, LEAST_RATIO * size[0]):
         raise UnobservableShape(
             "The tracks hold two dimensions only (singular values "
@@ -225,23 +251,23 @@ def _ranked(fit: AffineFit, noise: float, share: float) -> tuple[float, AffineFi
     ranked = AffineFit(
         motion=outer @ left * np.sqrt(count),
         translation=fit.translation + fit.motion @ centroid,
-        shape=(size[:, None] * right).T / np.sqrt(count),
+        shape=points.T @ left / np.sqrt(count),
         squared_error=fit.squared_error,
     )
     return float(size[2] / size[0]), ranked
 
 
-def _checked_metric(fit: AffineFit, noise: float, share: float) -> Metric:
+def _checked_metric(fit: AffineFit, noise: float, weights: Floats) -> Metric:
     """Return the metric, or raise UnobservableShape if the constraints leave it open."""
-    frames, points = len(fit.motion) // 2, len(fit.shape)
+    frames = len(fit.motion) // 2
     metric = solve_metric(fit.motion[:frames], fit.motion[frames:])
     weakest = float(np.linalg.norm(fit.shape, axis=0).min())
-    row_noise = noise / (weakest * np.sqrt(share)) if points else np.inf
+    row_noise = noise / (weakest * np.sqrt(np.mean(weights > 0)))
     if metric.singular_ratio < max(2 * row_noise, LEAST_RATIO):
         raise UnobservableShape(
-            "The lines of sight keep to one quadric cone, so that many shapes fit the tracks "
-            f"(metric constraints' singular values apart by {metric.singular_ratio:.1e}, noise "
-            f"{2 * row_noise:.1e}): a turn at a constant angle about one axis does that. "
-            "Add frames from elsewhere."
+            "More than one shape fits the tracks: the metric constraints' singular values are "
+            f"apart by {metric.singular_ratio:.1e}, the noise is {2 * row_noise:.1e}. Lines of "
+            "sight on one quadric cone do that, as in a turn at a constant angle about one axis; "
+            "add frames from elsewhere, or tracks with fewer wrong points."
         )
     return metric

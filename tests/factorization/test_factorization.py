@@ -111,6 +111,37 @@ def test_a_turn_at_a_constant_angle_is_reported(noise_cells):
         factorize(tracks)
 
 
+def test_who_asks_for_it_gets_one_of_many_shapes():
+    points_m, *_, random = scene(3, points=200)
+    k, rate = cone_path(24, 0.5)
+    speed = np.linalg.norm(rate, axis=1)
+    tracks = glinting(
+        tracks_of(points_m, k, rate),
+        Glint(noise_cells=0.2),
+        rotation_rate_rad_per_s=speed,
+        random=random,
+    )
+    result = factorize(tracks, even_if_ambiguous=True)
+    assert result.range_rms_m < 0.05
+    assert distance_m(result, points_m) > 1
+
+
+@pytest.mark.parametrize("visible", [1.0, 0.4])
+def test_uncertainty_is_the_size_of_the_error(visible):
+    points_m, k, rate, random = scene(4, points=300, frames=40)
+    speed = np.linalg.norm(rate, axis=1)
+    tracks = glinting(
+        tracks_of(points_m, k, rate),
+        Glint(visible=visible, noise_cells=0.5),
+        rotation_rate_rad_per_s=speed,
+        random=random,
+    )
+    result = factorize(tracks)
+    alignment = align(result.shape_m, points_m[result.points], with_scale=True)
+    error_m = np.linalg.norm(alignment.apply(result.shape_m) - points_m[result.points], axis=1)
+    assert np.sqrt(np.mean((error_m / result.uncertainty_m) ** 2)) == pytest.approx(1, abs=0.35)
+
+
 def test_flat_targets_are_reported():
     points_m, k, rate, _ = scene(5)
     with pytest.raises(UnobservableShape, match="two dimensions"):
