@@ -91,7 +91,11 @@ class Factorization:
 
 
 def factorize(
-    tracks: Floats, *, robust: bool = False, even_if_ambiguous: bool = False
+    tracks: Floats,
+    *,
+    scaled: bool = False,
+    robust: bool = False,
+    even_if_ambiguous: bool = False,
 ) -> Factorization:
     """Recover shape and motion from tracks of scatterers through range-Doppler images.
 
@@ -106,14 +110,14 @@ def factorize(
     Args:
         tracks: (frames, points, 2): range in metres, and cross-range or Doppler, each frame in a
             unit of its own but with its sign along dk/dt; NaN where a point is missing.
+        scaled: cross-range is in metres in every frame, by rotation rates known from elsewhere.
         robust: weigh points that fit badly less (Cauchy's loss) instead of by least squares.
         even_if_ambiguous: give the best shape, as the published algorithm does, where noise leaves
             room for others; for comparisons only.
 
     Raises:
         UnobservableShape: more than one shape fits. One pass of one station is such a case: its
-            lines of sight almost keep to one cone, and a tenth of a millimetre of noise hides
-            the rest.
+            lines of sight almost keep to one cone, and a millimetre of noise hides the rest.
         ValueError: tracks of another shape, or too few points seen together.
 
     Source: Tomasi and Kanade, 1992, with the constraints of `core.factorization.metric`; as a
@@ -132,7 +136,7 @@ def factorize(
     noise = _noise(fit, rows, weights, robust=robust)
     doubt = 0.0 if even_if_ambiguous else noise
     rank_ratio, fit = _ranked(fit, doubt, weights)
-    metric = _checked_metric(fit, doubt, weights)
+    metric = _checked_metric(fit, doubt, weights, doppler_unit if scaled else None)
     count = len(frames)
     residual = fit.residual(np.where(weights > 0, rows, 0))[:count]
     k, d = (part @ metric.upgrade for part in (fit.motion[:count], fit.motion[count:]))
@@ -257,16 +261,24 @@ def _ranked(fit: AffineFit, noise: float, weights: Floats) -> tuple[float, Affin
     return float(size[2] / size[0]), ranked
 
 
-def _checked_metric(fit: AffineFit, noise: float, weights: Floats) -> Metric:
-    """Return the metric, or raise UnobservableShape if the constraints leave it open."""
-    frames = len(fit.motion) // 2
-    metric = solve_metric(fit.motion[:frames], fit.motion[frames:])
+def _checked_metric(
+    fit: AffineFit, noise: float, weights: Floats, doppler_unit: Floats | None
+) -> Metric:
+    """Return the metric, or raise UnobservableShape if the constraints leave it open.
+
+    The noise of a motion row disturbs the constraints' singular values by about a third of itself.
+    """
+    k, d = np.split(fit.motion, 2)
+    if doppler_unit is None:
+        metric = solve_metric(k, d)
+    else:
+        metric = solve_metric(k, d * doppler_unit[:, None], scaled=True)
     weakest = float(np.linalg.norm(fit.shape, axis=0).min())
     row_noise = noise / (weakest * np.sqrt(np.mean(weights > 0)))
-    if metric.singular_ratio < max(2 * row_noise, LEAST_RATIO):
+    if metric.singular_ratio < max(row_noise, LEAST_RATIO):
         raise UnobservableShape(
             "More than one shape fits the tracks: the metric constraints' singular values are "
-            f"apart by {metric.singular_ratio:.1e}, the noise is {2 * row_noise:.1e}. Lines of "
+            f"apart by {metric.singular_ratio:.1e}, the noise is {row_noise:.1e}. Lines of "
             "sight on one quadric cone do that, as in a turn at a constant angle about one axis; "
             "add frames from elsewhere, or tracks with fewer wrong points."
         )

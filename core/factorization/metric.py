@@ -34,7 +34,7 @@ class Metric:
     rms: float
 
 
-def solve_metric(range_rows: Floats, doppler_rows: Floats) -> Metric:
+def solve_metric(range_rows: Floats, doppler_rows: Floats, *, scaled: bool = False) -> Metric:
     """Return what makes all range rows unit vectors, and Doppler rows perpendicular to them.
 
     The Doppler row's length is free: it is the frame's unknown rotation rate. The symmetric
@@ -44,20 +44,22 @@ def solve_metric(range_rows: Floats, doppler_rows: Floats) -> Metric:
     Args:
         range_rows: (frames, 3) affine motion in range.
         doppler_rows: (frames, 3) affine motion in Doppler, in any unit per frame.
+        scaled: Doppler is cross-range in metres, so that its rows are unit vectors too.
 
-    Source: the orthography of Tomasi and Kanade, 1992, with the constraint |d| = |k| of their
-    eq. for equal scales left out: a range-Doppler image's scales differ by the rotation rate.
+    Source: the metric constraints of Tomasi and Kanade, 1992; unless `scaled` without the one on
+    the second row's length, since a range-Doppler image's axes differ by the rotation rate.
     """
-    unit_rows = doppler_rows / np.linalg.norm(doppler_rows, axis=1, keepdims=True)
     length = np.sqrt(np.mean(np.sum(range_rows**2, axis=1)))
-    rows = range_rows / length
-    system = np.concatenate([_quadratic(rows, rows), _quadratic(rows, unit_rows)])
-    wanted = np.concatenate([np.ones(len(rows)), np.zeros(len(rows))])
+    k, d = range_rows / length, doppler_rows / length
+    across = d / np.linalg.norm(d, axis=1, keepdims=True)
+    units = np.concatenate([k, d]) if scaled else k
+    system = np.concatenate([_quadratic(units, units), _quadratic(k, across)])
+    wanted = np.concatenate([np.ones(len(units)), np.zeros(len(k))])
     entries, _, _, size = np.linalg.lstsq(system, wanted, rcond=None)
     factor = np.asarray(np.linalg.cholesky(_positive_definite(entries)), dtype=np.float64)
 
     def left_over(values: NDArray[np.float64]) -> Floats:
-        return _left_over(_lower(values), rows, unit_rows)
+        return _left_over(_lower(values), units, k, across)
 
     start = factor.T[UPPER]
     scale = max(LEAST_LOSS_SCALE, 1.4826 * float(np.median(np.abs(left_over(start)))))
@@ -96,10 +98,10 @@ def _lower(values: Floats) -> Floats:
     return factor.T
 
 
-def _left_over(factor: Floats, range_rows: Floats, doppler_rows: Floats) -> Floats:
+def _left_over(factor: Floats, units: Floats, range_rows: Floats, doppler_rows: Floats) -> Floats:
     """Return how far the constraints are from holding: lengths less one, then cosines."""
     k, d = range_rows @ factor, doppler_rows @ factor
-    length = np.linalg.norm(k, axis=1)
-    cosine = np.sum(k * d, axis=1) / np.maximum(length * np.linalg.norm(d, axis=1), 1e-300)
-    left: Floats = np.concatenate([length - 1, cosine])
+    size = np.linalg.norm(k, axis=1) * np.linalg.norm(d, axis=1)
+    cosine = np.sum(k * d, axis=1) / np.maximum(size, 1e-300)
+    left: Floats = np.concatenate([np.linalg.norm(units @ factor, axis=1) - 1, cosine])
     return left

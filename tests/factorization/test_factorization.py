@@ -111,6 +111,15 @@ def test_a_turn_at_a_constant_angle_is_reported(noise_cells):
         factorize(tracks)
 
 
+def test_cross_range_in_metres_settles_a_turn_at_a_constant_angle():
+    points_m, *_ = scene(3)
+    k, rate = cone_path(24, 0.5)
+    tracks = tracks_of(points_m, k, rate / np.linalg.norm(rate, axis=1, keepdims=True))
+    result = factorize(tracks, scaled=True)
+    assert distance_m(result, points_m) < 1e-6
+    assert result.cross_range_scale == pytest.approx(np.ones(24))
+
+
 def test_who_asks_for_it_gets_one_of_many_shapes():
     points_m, *_, random = scene(3, points=200)
     k, rate = cone_path(24, 0.5)
