@@ -22,6 +22,12 @@ from core.energy_accumulation.accumulation import (
 from core.frame import Frame
 from core.geometry.grid import VoxelGrid
 
+BRIGHT = 0.1
+"""A frame shows a scatterer that has this share of the frame's brightest pixel or more."""
+
+ROUNDING = 1e-5
+"""Share of the first scatterer's energy that single precision may leave of cells taken out."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class EnergyScatterers:
@@ -32,7 +38,7 @@ class EnergyScatterers:
         energy: (scatterers,) sum of the images, as they then were, at its projections.
         frames: (scatterers,) number of images that held a tenth of their brightest pixel or more
             there.
-        left_over: share of the images' sum that no scatterer took out.
+        left_over: share of the images' sum that the search left in them.
     """
 
     position_m: Floats
@@ -59,6 +65,19 @@ class EnergyScatterers:
             return np.zeros(3)
         extents: Floats = np.ptp(self.position_m, axis=0)
         return extents
+
+    def seen_in(self, least_frames: int) -> "EnergyScatterers":
+        """Return those that at least so many frames show.
+
+        What is found late stands where the leavings of several scatterers happen to meet.
+        """
+        kept = self.frames >= least_frames
+        return EnergyScatterers(
+            position_m=self.position_m[kept],
+            energy=self.energy[kept],
+            frames=self.frames[kept],
+            left_over=self.left_over,
+        )
 
     def voxels(self, grid: VoxelGrid) -> NDArray[np.bool_]:
         """Return which voxels (nx, ny, nz) of a grid hold a scatterer; those outside are lost."""
@@ -96,34 +115,48 @@ def extract_scatterers(
     Raises:
         ValueError: no frames, frames that cannot be accumulated, or of unknown resolution.
 
-    Source: Liu, Zhou, Zhou and Shi, 2020, who search the maximum by a particle swarm; here all
-    voxels are candidates, so that the maximum is certain, to half a voxel. How much of an image
-    one scatterer takes out is our choice.
+    Source: Liu, Zhou, Zhou and Shi, "A new 3-D geometry reconstruction method of space target
+    utilizing the scatterer energy accumulation of ISAR image sequence", 2020, as those who follow
+    tell it ("PP-ISEA", Sensors 24(11) 3550, 2024): they search the maximum by a particle swarm.
+    Here all voxels are candidates, so that the maximum is certain, to half a voxel. How much of an
+    image one scatterer takes out, and when the search ends, is our choice.
     """
+    _check_limits(most, least_share, stop_left_over)
     energy = accumulated_energy(frames, grid, measure=measure)
     images = [padded_image(frame, grid, measure=measure) for frame in frames]
     cells = [_cell_px(frame) for frame in frames]
-    bright = np.array([0.1 * image.values.max() for image in images])
+    bright = np.array([BRIGHT * image.values.max() for image in images])
     whole = left = sum(float(image.values.sum(dtype=np.float64)) for image in images)
-    found: list[tuple[NDArray[np.int64], float, int]] = []
-    while len(found) < most and left > stop_left_over * whole:
-        voxel = np.array(np.unravel_index(int(energy.argmax()), grid.shape))
-        value = float(energy[tuple(voxel)])
-        # What rounding leaves of taken cells is no scatterer.
-        if value <= max(least_share * found[0][1], 1e-5 * found[0][1]) if found else value <= 0:
+    voxels: list[tuple[np.intp, ...]] = []
+    values: list[float] = []
+    counts: list[int] = []
+    while len(voxels) < most and left > stop_left_over * whole:
+        voxel = np.unravel_index(int(energy.argmax()), grid.shape)
+        value = float(energy[voxel])
+        if voxels and value <= max(least_share, ROUNDING) * values[0]:
             break
         places = [image.matrix[:, :3] @ voxel + image.matrix[:, 3] for image in images]
-        samples = np.array([_sample(*pair) for pair in zip(images, places, strict=True)])
-        found.append((voxel, value, int(np.count_nonzero(samples >= bright))))
+        samples = [_brightest(*pair) for pair in zip(images, places, strict=True)]
+        voxels.append(voxel)
+        values.append(value)
+        counts.append(int(np.count_nonzero(samples >= bright)))
         left -= _take_out(energy, images, places, cells)
-        progress("scatterers", len(found), most)
-    index = np.array([voxel for voxel, _, _ in found], dtype=np.float64).reshape(-1, 3)
+        progress("scatterers", len(voxels), most)
+    index = np.array(voxels, dtype=np.float64).reshape(-1, 3)
     return EnergyScatterers(
         position_m=grid.origin_m + grid.spacing_m * index,
-        energy=np.array([value for _, value, _ in found]),
-        frames=np.array([count for _, _, count in found], dtype=np.int64),
+        energy=np.array(values),
+        frames=np.array(counts, dtype=np.int64),
         left_over=left / whole,
     )
+
+
+def _check_limits(most: int, least_share: float, stop_left_over: float) -> None:
+    if most < 1 or not (0 <= least_share <= 1 and 0 <= stop_left_over <= 1):
+        raise ValueError(
+            "A search finds at least 1 scatterer and its shares lie from 0 to 1; got "
+            f"{most}, {least_share} and {stop_left_over}."
+        )
 
 
 def _cell_px(frame: Frame) -> tuple[float, float]:
@@ -141,7 +174,7 @@ def _cell_px(frame: Frame) -> tuple[float, float]:
     return cells[0], cells[1]
 
 
-def _sample(image: PaddedImage, place: Floats) -> float:
+def _brightest(image: PaddedImage, place: Floats) -> float:
     """Return the brightest of the four pixels about a place, 0 outside."""
     row, column = np.floor(place).astype(int)
     rows, columns = image.values.shape

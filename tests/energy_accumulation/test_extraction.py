@@ -64,7 +64,24 @@ def test_energies_fall_and_the_search_ends_with_the_images():
     assert fewer.energy.min() >= 0.5 * fewer.energy[0]
 
 
+def test_scatterers_that_few_frames_show_are_put_aside():
+    random = np.random.default_rng(7)
+    found = extract_scatterers(
+        frames_of_points(random.normal(size=(8, 3)), views=10, random=random), GRID
+    )
+    often = found.seen_in(8)
+    assert 0 < len(often) < len(found)
+    assert often.frames.min() >= 8
+    assert often.energy[0] == found.energy[np.argmax(found.frames >= 8)]
+
+
 def test_unknown_resolution_is_refused():
     frame = frames_of_points([[0, 0, 0]], views=1, random=np.random.default_rng(1))[0]
     with pytest.raises(ValueError, match="row resolution"):
         extract_scatterers([replace(frame, row_resolution_m=None)], GRID)
+
+
+@pytest.mark.parametrize("limits", [{"most": 0}, {"least_share": 2.0}, {"stop_left_over": -0.1}])
+def test_impossible_limits_are_refused(limits):
+    with pytest.raises(ValueError, match="at least 1 scatterer"):
+        extract_scatterers([], GRID, **limits)
