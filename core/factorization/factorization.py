@@ -1,5 +1,6 @@
 """The factorization algorithm for range-Doppler tracks: shape and motion, no line of sight."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ from core.factorization.low_rank import (
     first_guess,
     fit_complete,
     fit_incomplete,
+    with_shape,
 )
 from core.factorization.metric import Metric, solve_metric
 
@@ -26,6 +28,9 @@ UNCERTAIN = 3.0
 
 NOISE_MARGIN = 3.0
 """A third singular value within this many times the noise's own greatest is noise."""
+
+RANDOM_STARTS = 3
+"""Tracks that are seen without a break for a third of the frames have false minima."""
 
 ROBUST_ROUNDS = 12
 """How often points are weighed anew, two steps of the fit after each."""
@@ -104,8 +109,11 @@ def factorize(
     every u perpendicular to it.
 
     Without gaps the rank-three fit is the singular value decomposition; with gaps, and under the
-    robust loss, the damped Wiberg algorithm. The published algorithm is not robust: a wrong
-    association enters like any other point.
+    robust loss, the damped Wiberg algorithm from a few starts. The published algorithm is not
+    robust: a wrong association enters like any other point. Where gaps and wrong associations
+    meet, both fail: 755 scatterers in 60 frames stand nine tenths of gaps alone, but with a tenth
+    of wrong points on top least squares finds no shape, and the robust loss one in which points
+    of two or three frames lie metres off.
 
     Args:
         tracks: (frames, points, 2): range in metres, and cross-range or Doppler, each frame in a
@@ -129,31 +137,27 @@ def factorize(
         raise ValueError(f"Tracks are an array (frames, points, 2), got {tracks.shape}.")
     seen = np.all(np.isfinite(tracks), axis=2)
     frames, points = _usable(seen)
-    used, known = tracks[np.ix_(frames, points)], seen[np.ix_(frames, points)]
-    rows, doppler_unit = _rows(used, known)
+    known = seen[np.ix_(frames, points)]
+    rows, doppler_unit = _rows(tracks[np.ix_(frames, points)], known)
     weights = np.concatenate([known, known]).astype(np.float64)
     fit = _fitted(rows, weights, robust=robust)
     noise = _noise(fit, rows, weights, robust=robust)
     doubt = 0.0 if even_if_ambiguous else noise
     rank_ratio, fit = _ranked(fit, doubt, weights)
     metric = _checked_metric(fit, doubt, weights, doppler_unit if scaled else None)
-    count = len(frames)
-    residual = fit.residual(np.where(weights > 0, rows, 0))[:count]
-    k, d = (part @ metric.upgrade for part in (fit.motion[:count], fit.motion[count:]))
-    shape = fit.shape @ np.linalg.inv(metric.upgrade).astype(np.float64).T
+    k, d = np.split(fit.motion @ metric.upgrade, 2)
     scale = np.linalg.norm(d, axis=1)
+    range_translation, doppler_translation = np.split(fit.translation, 2)
     return Factorization(
-        shape_m=shape,
+        shape_m=fit.shape @ np.linalg.inv(metric.upgrade).T,
         points=points,
         line_of_sight=k / np.linalg.norm(k, axis=1, keepdims=True),
         cross_range_direction=d / scale[:, None],
         cross_range_scale=scale * doppler_unit,
-        translation=np.column_stack(
-            [fit.translation[:count], fit.translation[count:] * doppler_unit]
-        ),
+        translation=np.column_stack([range_translation, doppler_translation * doppler_unit]),
         frames=frames,
         uncertainty_m=noise * _dilution(fit.motion @ metric.upgrade, weights),
-        range_rms_m=float(np.sqrt(np.mean(residual[known] ** 2))),
+        range_rms_m=float(np.sqrt(np.mean(fit.residual(rows)[: len(frames)][known] ** 2))),
         rank_ratio=rank_ratio,
         metric_ratio=metric.singular_ratio,
     )
@@ -199,10 +203,23 @@ def _fitted(rows: Floats, weights: Floats, *, robust: bool) -> AffineFit:
     if np.all(weights > 0):
         fit = fit_complete(rows)
     else:
-        fit = fit_incomplete(rows, weights, first_guess(rows, weights))
+        fit = min(
+            (fit_incomplete(rows, weights, start) for start in _starts(rows, weights)),
+            key=lambda found: found.squared_error,
+        )
     for _ in range(ROBUST_ROUNDS if robust else 0):
         fit = fit_incomplete(rows, weights * _cauchy(fit, rows, weights), fit, steps=2)
     return fit
+
+
+def _starts(rows: Floats, weights: Floats) -> Iterator[AffineFit]:
+    """Yield where to start from: the guess that suits gaps at random, then motions at random."""
+    guess = first_guess(rows, weights)
+    yield guess
+    random = np.random.default_rng(0)
+    for _ in range(RANDOM_STARTS):
+        motion = random.normal(size=guess.motion.shape)
+        yield with_shape(motion, guess.translation, rows, weights)
 
 
 def _cauchy(fit: AffineFit, rows: Floats, weights: Floats) -> Floats:

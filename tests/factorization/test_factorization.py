@@ -73,6 +73,15 @@ def test_nine_tenths_of_755_scatterers_missing():
     assert distance_m(result, points_m) < 0.15
 
 
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_scatterers_seen_for_a_third_of_the_frames_without_a_break(seed):
+    points_m, k, rate, random = scene(seed, points=200, frames=45)
+    tracks = tracks_of(points_m, k, rate)
+    since_rise = (np.arange(45)[:, None] - random.integers(0, 45, 200)) % 45
+    tracks[since_rise >= 15] = np.nan
+    assert distance_m(factorize(tracks), points_m) < 1e-6
+
+
 def test_wrong_associations_spoil_least_squares_and_not_the_robust_loss():
     points_m, k, rate, random = scene(2, points=150, frames=30)
     speed = np.linalg.norm(rate, axis=1)
