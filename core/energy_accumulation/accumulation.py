@@ -95,7 +95,8 @@ def accumulated_energy(
     Source: the objective that Liu, Zhou, Zhou and Shi, "A new 3-D geometry reconstruction method
     of space target utilizing the scatterer energy accumulation of ISAR image sequence", 2020,
     maximise for one scatterer at a time (`core.energy_accumulation.extraction`), evaluated for
-    all places at once. Frames of equal energy are our choice; the paper's text was not at hand.
+    all places at once. Frames of equal energy and bilinear pixels are our choice: only those who
+    follow that paper were at hand.
     """
     images = [padded_image(frame, grid, measure=measure) for frame in frames]
     if not images:

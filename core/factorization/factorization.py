@@ -30,7 +30,7 @@ NOISE_MARGIN = 3.0
 """A third singular value within this many times the noise's own greatest is noise."""
 
 RANDOM_STARTS = 3
-"""Tracks that are seen without a break for a third of the frames have false minima."""
+"""Tracks that are seen without a break for a third of the frames or less have false minima."""
 
 ROBUST_ROUNDS = 12
 """How often points are weighed anew, two steps of the fit after each."""
@@ -49,7 +49,8 @@ class Factorization:
 
     The frame is the algorithm's own: the truth is R · shape for one unknown orthogonal R, which
     may mirror (shape and motion both turned round give the same tracks). Range is in metres and
-    its row a unit vector, so that the scale is known if ranges are; the origin is the centroid.
+    its row a unit vector, so that the scale is known if ranges are; the origin is the centroid of
+    the points that are certain enough.
 
     Attributes:
         shape_m: (points found, 3).
@@ -58,7 +59,7 @@ class Factorization:
         cross_range_direction: (frames used, 3) unit rows along dk/dt.
         cross_range_scale: (frames used,) what cross-range metres are multiplied by in the tracks:
             the rotation rate in rad/s where the tracks hold range rates.
-        translation: (frames used, 2) image of the centroid, in the tracks' units.
+        translation: (frames used, 2) image of the origin, in the tracks' units.
         frames: (frames used,) their numbers; a frame needs four points.
         uncertainty_m: (points found,) standard deviation of the distance from the true place, the
             motion taken as exact; a point seen in two like frames has a large one.
@@ -112,8 +113,8 @@ def factorize(
     robust loss, the damped Wiberg algorithm from a few starts. The published algorithm is not
     robust: a wrong association enters like any other point. Where gaps and wrong associations
     meet, both fail: 755 scatterers in 60 frames stand nine tenths of gaps alone, but with a tenth
-    of wrong points on top least squares finds no shape, and the robust loss one in which points
-    of two or three frames lie metres off.
+    of wrong points on top least squares is off by metres, and the robust loss at those scatterers
+    that two or three frames show.
 
     Args:
         tracks: (frames, points, 2): range in metres, and cross-range or Doppler, each frame in a

@@ -73,12 +73,15 @@ def test_nine_tenths_of_755_scatterers_missing():
     assert distance_m(result, points_m) < 0.15
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
-def test_scatterers_seen_for_a_third_of_the_frames_without_a_break(seed):
-    points_m, k, rate, random = scene(seed, points=200, frames=45)
+@pytest.mark.parametrize("seed", [4, 8, 9])
+def test_scatterers_seen_for_a_quarter_of_the_frames_without_a_break(seed):
+    """Three of many scenes whose first start leads into a false minimum, metres off."""
+    random = np.random.default_rng(seed)
+    k, rate = generic_path(40, random)
+    points_m = random.normal(size=(100, 3)) * [18, 3, 4]
     tracks = tracks_of(points_m, k, rate)
-    since_rise = (np.arange(45)[:, None] - random.integers(0, 45, 200)) % 45
-    tracks[since_rise >= 15] = np.nan
+    since_rise = (np.arange(40)[:, None] - random.integers(0, 40, 100)) % 40
+    tracks[since_rise >= 10] = np.nan
     assert distance_m(factorize(tracks), points_m) < 1e-6
 
 
