@@ -13,11 +13,13 @@ from fastapi import FastAPI
 
 from app.compilation import compiling
 from app.gate import LOOPBACK_NAMES
+from app.key_points import KeyPoints
 from app.playback import DEFAULT_SPEED_HZ, Playback
 from app.source import Source
 from app.stream import LiveStream, SurfaceOf
 from app.uncarved import UncarvedWatch
 from app.viewport import Viewport
+from app.viewport_key_points import KeyPointNodes
 from app.viewport_pages import ViewportPages
 from app.viser_server import PrivateViserServer
 from app.web import create_app
@@ -92,6 +94,7 @@ def workstation(
     stream = LiveStream(source, settings, playback=playback, surface_of=surface_of)
     viser_server = PrivateViserServer()
     viewport = Viewport(viser_server, reference=reference)
+    key_points = KeyPoints(lambda: stream.source.key)
     uncarved = UncarvedWatch(lambda: stream.volume, viewport.show_uncarved)
 
     def want(layers: frozenset[str]) -> None:
@@ -100,9 +103,11 @@ def workstation(
 
     pages = ViewportPages(viser_server, want, has_reference=reference is not None)
     try:
-        app = create_app(stream, viser_server.address, pages)
+        app = create_app(stream, viser_server.address, pages, key_points)
         stream.observe(viewport.show)
         stream.observe(uncarved.note)
+        stream.observe(key_points.note)
+        key_points.observe(KeyPointNodes(viser_server).show)
         stream.start()
         yield app
     finally:

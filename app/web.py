@@ -15,6 +15,7 @@ from app import (
     editing_api,
     export_api,
     extraction_api,
+    key_points_api,
     silhouettes_api,
     source_api,
     thumbnails_api,
@@ -22,6 +23,8 @@ from app import (
 )
 from app.changes import Changes
 from app.gate import LOOPBACK_NAMES, Gate
+from app.key_point_facts import book_facts, point_facts
+from app.key_points import KeyPoints
 from app.relay import relay
 from app.stream import LiveStream
 from app.thumbnails import Thumbnails
@@ -35,6 +38,7 @@ def create_app(
     stream: LiveStream,
     viewport: ViserAddress,
     pages: ViewportPages,
+    key_points: KeyPoints,
     *,
     host_names: Iterable[str] = LOOPBACK_NAMES,
 ) -> FastAPI:
@@ -44,6 +48,7 @@ def create_app(
         stream: the live loop; whoever made it starts and stops it.
         viewport: where viser listens.
         pages: whose cameras and layers can be set.
+        key_points: that are marked in the frames.
         host_names: names under which browsers may address the server.
     """
     app = FastAPI(title="radarhull", docs_url=None, redoc_url=None, openapi_url="/openapi.json")
@@ -52,12 +57,14 @@ def create_app(
     app.state.thumbnails = Thumbnails()
     stream.observe(lambda _: app.state.changes.notify())
     app.state.viewport_pages = pages
+    _add_key_points(app, stream, key_points)
     for part in (
         api,
         course_api,
         editing_api,
         export_api,
         extraction_api,
+        key_points_api,
         silhouettes_api,
         source_api,
         thumbnails_api,
@@ -86,6 +93,13 @@ def static_folder() -> Path:
         f"The page's files are missing: neither {package / 'static'} nor "
         f"{package.parent / 'static'} holds an index.html. Install radarhull again."
     )
+
+
+def _add_key_points(app: FastAPI, stream: LiveStream, key_points: KeyPoints) -> None:
+    app.state.key_points = key_points
+    stream.beside["key_points"] = lambda: point_facts(key_points.state)
+    stream.beside["key_points_book"] = lambda: book_facts(key_points.state)
+    key_points.observe(lambda _: app.state.changes.notify())
 
 
 def _add_viewport(app: FastAPI, viewport: ViserAddress) -> None:

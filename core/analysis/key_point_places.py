@@ -93,7 +93,7 @@ def _placed(
         place = _located(name, [projections[frame] for frame in here], seen, sigma_px)
     except ValueError as error:
         complaint = str(error)
-    residuals = {} if place is None else dict(zip(here, place.residual_px, strict=True))
+    residuals = {} if place is None else dict(zip(here, place.residual_px.tolist(), strict=True))
     return PlacedPoint(
         name=name,
         marks=tuple(_mark(frame, marks[frame], residuals.get(frame), sigma_px) for frame in marks),
@@ -116,7 +116,7 @@ def _mark(frame: int, place: Place, residual_px: float | None, sigma_px: float) 
         frame=frame,
         row=place[0],
         column=place[1],
-        residual_px=None if residual_px is None else float(residual_px),
+        residual_px=residual_px,
         is_suspicious=residual_px is not None and residual_px > SUSPICIOUS_SIGMAS * sigma_px,
     )
 
