@@ -8,6 +8,7 @@ from types import MappingProxyType
 from app.snapshot import Snapshot
 from core.analysis.key_point_marks import KeyPointBook
 from core.analysis.key_point_places import PlacedPoint, placed_points
+from core.arrays import Floats
 from core.geometry.projection import Projection
 
 
@@ -24,6 +25,11 @@ class KeyPointState:
     book: KeyPointBook
     projections: Mapping[int, Projection]
     points: tuple[PlacedPoint, ...]
+
+    @property
+    def places_m(self) -> dict[str, Floats]:
+        """(3,) by name, target frame, of the points that have a place."""
+        return {p.name: p.place.position_m for p in self.points if p.place is not None}
 
 
 Observer = Callable[[KeyPointState], None]

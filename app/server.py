@@ -14,6 +14,7 @@ from fastapi import FastAPI
 from app.compilation import compiling
 from app.gate import LOOPBACK_NAMES
 from app.key_points import KeyPoints
+from app.measuring import MeasurementDesk
 from app.playback import DEFAULT_SPEED_HZ, Playback
 from app.source import Source
 from app.stream import LiveStream, SurfaceOf
@@ -96,6 +97,7 @@ def workstation(
     viewport = Viewport(viser_server, reference=reference)
     key_points = KeyPoints(lambda: stream.source.key)
     uncarved = UncarvedWatch(lambda: stream.volume, viewport.show_uncarved)
+    desk = MeasurementDesk(stream)
 
     def want(layers: frozenset[str]) -> None:
         viewport.want(layers)
@@ -103,14 +105,18 @@ def workstation(
 
     pages = ViewportPages(viser_server, want, has_reference=reference is not None)
     try:
-        app = create_app(stream, viser_server.address, pages, key_points)
+        app = create_app(stream, viser_server.address, pages, desk, key_points)
         stream.observe(viewport.show)
         stream.observe(uncarved.note)
+        stream.observe(desk.note)
         stream.observe(key_points.note)
         key_points.observe(KeyPointNodes(viser_server).show)
+        key_points.observe(lambda state: desk.set_key_points(state.places_m))
         stream.start()
+        desk.start()
         yield app
     finally:
+        desk.stop()
         uncarved.stop()
         stream.stop()
         viser_server.stop()

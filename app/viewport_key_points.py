@@ -22,9 +22,7 @@ class KeyPointNodes:
 
     def show(self, state: KeyPointState) -> None:
         """Bring the scene up to date; does nothing for what is already there."""
-        placed = {
-            point.name: point.place.position_m for point in state.points if point.place is not None
-        }
+        placed = state.places_m
         wanted = {name: tuple(position) for name, position in placed.items()}
         if wanted == self._shown:
             return

@@ -25,6 +25,7 @@ from app.changes import Changes
 from app.gate import LOOPBACK_NAMES, Gate
 from app.key_point_facts import book_facts, point_facts
 from app.key_points import KeyPoints
+from app.measuring import MeasurementDesk
 from app.relay import relay
 from app.stream import LiveStream
 from app.thumbnails import Thumbnails
@@ -38,6 +39,7 @@ def create_app(
     stream: LiveStream,
     viewport: ViserAddress,
     pages: ViewportPages,
+    desk: MeasurementDesk,
     key_points: KeyPoints,
     *,
     host_names: Iterable[str] = LOOPBACK_NAMES,
@@ -48,6 +50,7 @@ def create_app(
         stream: the live loop; whoever made it starts and stops it.
         viewport: where viser listens.
         pages: whose cameras and layers can be set.
+        desk: at which the hull is measured; whoever made it starts and stops it.
         key_points: that are marked in the frames.
         host_names: names under which browsers may address the server.
     """
@@ -57,6 +60,8 @@ def create_app(
     app.state.thumbnails = Thumbnails()
     stream.observe(lambda _: app.state.changes.notify())
     app.state.viewport_pages = pages
+    app.state.desk = desk
+    desk.observe(lambda _: app.state.changes.notify())
     _add_key_points(app, stream, key_points)
     for part in (
         api,
@@ -97,8 +102,8 @@ def static_folder() -> Path:
 
 def _add_key_points(app: FastAPI, stream: LiveStream, key_points: KeyPoints) -> None:
     app.state.key_points = key_points
-    stream.beside["key_points"] = lambda: point_facts(key_points.state)
-    stream.beside["key_points_book"] = lambda: book_facts(key_points.state)
+    stream.also_told["key_points"] = lambda: point_facts(key_points.state)
+    stream.also_told["key_points_book"] = lambda: book_facts(key_points.state)
     key_points.observe(lambda _: app.state.changes.notify())
 
 
