@@ -6,10 +6,10 @@ from app.key_points import KeyPointState
 from app.layers import KEY_POINT_COLOUR
 from core.arrays import Floats
 
-RADIUS_M = 0.12
-"""As large as a mark of a radar frame is exact."""
+RADIUS_M = 0.2
+"""Large enough to be seen from home, and about as exact as a radar frame is marked."""
 
-LABEL_LIFT_M = 0.35
+LABEL_LIFT_M = 0.3
 
 
 class KeyPointNodes:
