@@ -31,6 +31,11 @@ class KeyPointState:
         """(3,) by name, target frame, of the points that have a place."""
         return {p.name: p.place.position_m for p in self.points if p.place is not None}
 
+    @property
+    def covariances_m2(self) -> dict[str, Floats]:
+        """(3, 3) of those places, by name."""
+        return {p.name: p.place.covariance_m2 for p in self.points if p.place is not None}
+
 
 Observer = Callable[[KeyPointState], None]
 

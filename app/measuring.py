@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
+import numpy as np
+
 from app.idle_work import Host
 from app.measuring_intervals import (
     Intervals,
@@ -20,6 +22,11 @@ from core.analysis.measurement_book import MeasurementBook
 from core.analysis.measurement_grades import graded
 from core.arrays import Floats
 from core.measurement.intervals import Interval
+from core.measurement.key_point_errors import (
+    is_between_key_points,
+    marks_errors,
+    with_marks_error,
+)
 from core.measurement.measuring import MeasuringContext, measure_all
 from core.measurement.observability import Grade
 from core.measurement.results import Lost, Measurement
@@ -64,6 +71,8 @@ class _Found:
     result: Measurement | Lost
     observability: Grade | None
     change: float | None
+    marks_error: float | None = None
+    """Standard error by the marks of key points, None where none enters."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -73,6 +82,7 @@ class _Job:
     snapshot: Snapshot
     book: MeasurementBook
     key_points: Mapping[str, Floats]
+    covariances_m2: Mapping[str, Floats]
 
 
 class MeasurementDesk:
@@ -89,6 +99,7 @@ class MeasurementDesk:
         self._changed = threading.Condition()
         self._book = MeasurementBook()
         self._key_points: Mapping[str, Floats] = MappingProxyType({})
+        self._covariances_m2: Mapping[str, Floats] = MappingProxyType({})
         self._snapshot: Snapshot | None = None
         self._run = 0
         self._found: dict[int, _Found] = {}
@@ -112,7 +123,7 @@ class MeasurementDesk:
         with self._changed:
             found, entries = self._found, self._book.entries
         intervals = self._intervals.found
-        return tuple(
+        items = (
             _with_interval(
                 Item(
                     spec=entry.spec,
@@ -127,6 +138,8 @@ class MeasurementDesk:
             )
             for entry in entries
         )
+        founds = (found.get(entry.key) for entry in entries)
+        return tuple(_with_marks(*pair) for pair in zip(items, founds, strict=True))
 
     @property
     def serial(self) -> int:
@@ -154,10 +167,23 @@ class MeasurementDesk:
         """(3,) places of key points by name, target frame."""
         return self._key_points
 
-    def set_key_points(self, places: Mapping[str, Floats]) -> None:
-        """Let key points lie elsewhere; what refers to them is measured anew."""
+    def set_key_points(
+        self, places: Mapping[str, Floats], covariances_m2: Mapping[str, Floats] | None = None
+    ) -> None:
+        """Let key points lie elsewhere; what refers to them is measured anew.
+
+        Args:
+            places: (3,) of each by name, target frame.
+            covariances_m2: (3, 3) of each place; one without is taken to be exact.
+        """
+        covariances_m2 = covariances_m2 or {}
         with self._changed:
+            if _are_same(places, self._key_points) and _are_same(
+                covariances_m2, self._covariances_m2
+            ):
+                return
             self._key_points = MappingProxyType(dict(places))
+            self._covariances_m2 = MappingProxyType(dict(covariances_m2))
             self._changed.notify_all()
         self._intervals.look()
 
@@ -314,7 +340,12 @@ class MeasurementDesk:
         """Return what is to be measured, None if it has been; under the lock."""
         if self._snapshot is None:
             return None
-        job = _Job(snapshot=self._snapshot, book=self._book, key_points=self._key_points)
+        job = _Job(
+            snapshot=self._snapshot,
+            book=self._book,
+            key_points=self._key_points,
+            covariances_m2=self._covariances_m2,
+        )
         done = self._done
         is_done = (
             done is not None
@@ -376,9 +407,17 @@ def _measured(job: _Job) -> dict[int, _Found]:
         revision=hull.revision, threshold=hull.threshold, key_points=job.key_points
     )
     results = measure_all(specs, surface, context)
+    by_name = {spec.name: result for spec, result in zip(specs, results, strict=True)}
+    errors = marks_errors(specs, surface, context, by_name, job.covariances_m2)
     grades = graded(results, specs, voting_views(snapshot), snapshot.settings.grid(), hull.extents)
     return {
-        entry.key: _Found(result=result, observability=grade, change=None)
+        entry.key: _Found(
+            result=result,
+            # Key points that the frames do not determine have no place to measure between.
+            observability=None if is_between_key_points(entry.spec) else grade,
+            change=None,
+            marks_error=errors.get(entry.name),
+        )
         for entry, result, grade in zip(entries, results, grades, strict=True)
     }
 
@@ -400,3 +439,21 @@ def _with_interval(item: Item, key: int, intervals: Intervals | None) -> Item:
     if isinstance(item.result, Measurement) and item.result.revision == intervals.revision:
         return replace(item, interval=interval)
     return replace(item, old_interval=interval, old_revision=intervals.revision)
+
+
+def _with_marks(item: Item, found: _Found | None) -> Item:
+    """Return an item whose interval holds what the marks of its key points may be off."""
+    if found is None or found.marks_error is None or not isinstance(item.result, Measurement):
+        return item
+    is_free = is_between_key_points(item.spec)
+    if item.interval is None and not is_free:
+        return item
+    hull = None if is_free else item.interval
+    interval = with_marks_error(item.result.value, found.marks_error, hull)
+    return replace(item, interval=interval, old_interval=None)
+
+
+def _are_same(one: Mapping[str, Floats], other: Mapping[str, Floats]) -> bool:
+    return one.keys() == other.keys() and all(
+        np.array_equal(value, other[name]) for name, value in one.items()
+    )

@@ -111,7 +111,7 @@ def workstation(
         stream.observe(desk.note)
         stream.observe(key_points.note)
         key_points.observe(KeyPointNodes(viser_server).show)
-        key_points.observe(lambda state: desk.set_key_points(state.places_m))
+        key_points.observe(lambda now: desk.set_key_points(now.places_m, now.covariances_m2))
         stream.start()
         desk.start()
         yield app

@@ -8,7 +8,7 @@ from scipy import stats
 
 from core.arrays import Floats
 from core.hull.closed_mesh import Surface
-from core.measurement.anchors import KeyPoint, Point
+from core.measurement.anchors import Anchor, KeyPoint, Point
 from core.measurement.intervals import CONFIDENCE, Interval
 from core.measurement.measuring import MeasuringContext, measure
 from core.measurement.results import Lost, Measurement
@@ -131,13 +131,20 @@ def key_points_of(spec: Spec) -> frozenset[str]:
     return frozenset(_names(spec))
 
 
-def is_free_of_hull(spec: Spec) -> bool:
-    """Whether a spec measures between key points and fixed points only."""
+def is_between_key_points(spec: Spec) -> bool:
+    """Whether a spec measures between key points only, so that the hull does not enter.
+
+    Among the key points there may be fixed points.
+    """
     if isinstance(spec, Length | LineFeature):
-        return all(isinstance(anchor, KeyPoint | Point) for anchor in (spec.start, spec.end))
-    if isinstance(spec, Polyline | PlaneThrough):
-        return all(isinstance(anchor, KeyPoint | Point) for anchor in spec.anchors)
-    return False
+        anchors: tuple[Anchor, ...] = (spec.start, spec.end)
+    elif isinstance(spec, Polyline | PlaneThrough):
+        anchors = spec.anchors
+    else:
+        return False
+    return bool(key_points_of(spec)) and all(
+        isinstance(anchor, KeyPoint | Point) for anchor in anchors
+    )
 
 
 def _names(value: object) -> Iterator[str]:

@@ -10,10 +10,14 @@ import pytest
 
 from app.key_points import KeyPoints
 from app.playback import Playback
+from app.server import workstation
 from app.viewport_key_points import KeyPointNodes
 from app.viser_server import PrivateViserServer
 from core.analysis.analysis import Analysis
+from core.measurement.anchors import KeyPoint as Corner
 from core.measurement.key_points import length_between, located
+from core.measurement.results import Lost
+from core.measurement.specs import Length
 from tests.app.running import running
 from tests.app.synthetic import SETTINGS, frames, source
 from tests.app.test_viewport import snapshot_of
@@ -185,6 +189,35 @@ def test_places_follow_the_registration_of_frames_and_marks_outlive_a_replay() -
     assert points.state.points == ()
     assert not points.state.book.can_undo
     assert points.state.book.revision > told[-2].book.revision
+
+
+def test_the_desk_measures_between_key_points_with_the_interval_of_their_marks(wait_for) -> None:
+    playback = Playback(speed_hz=None)
+    with workstation(source(3), SETTINGS, playback=playback) as app:
+        desk, points = app.state.desk, app.state.key_points
+        wait_for(lambda: len(points.state.projections) == 3)
+        desk.add(Length(name="side", start=Corner(name="a"), end=Corner(name="b")))
+        wait_for(lambda: isinstance(desk.items[0].result, Lost))
+        assert 'no key point "a"' in desk.items[0].result.reason
+        for name, point_m in (("a", CORNER_M), ("b", OTHER_M)):
+            for number, projection in enumerate(PROJECTIONS[:3], start=1):
+                place = tuple(projection.image_points(point_m))
+                points.change(lambda book, at=(name, number, place): book.marked(*at))
+        alone = length_between(*(point.place for point in points.state.points))
+
+        def told() -> float:
+            interval = desk.items[0].interval
+            return float("nan") if interval is None else interval.high
+
+        wait_for(lambda: abs(told() - alone.high_m) < 1e-3)
+        (item,) = desk.items
+        assert item.result.value == pytest.approx(alone.value_m)
+        assert item.observability is None
+        assert item.interval.low == pytest.approx(alone.low_m, abs=1e-3)
+        assert item.interval.method == "95 % interval: from the marks of its key points"
+        same = desk.key_points
+        points.change(lambda book: book.marked("c", 1, (80.0, 80.0)))
+        assert desk.key_points is same
 
 
 def test_placed_points_stand_in_the_viewport_and_go_with_their_marks() -> None:

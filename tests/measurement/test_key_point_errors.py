@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from core.measurement.anchors import Extreme, KeyPoint, Point
 from core.measurement.intervals import Interval
 from core.measurement.key_point_errors import (
-    is_free_of_hull,
+    is_between_key_points,
     key_points_of,
     marks_errors,
     with_marks_error,
@@ -124,6 +124,8 @@ def test_what_is_lost_when_a_key_point_moves_has_no_error():
 
 def test_specs_know_their_key_points_and_whether_the_hull_enters():
     between, to_hull, of_hull, angle, *_ = SPECS
+    fixed = Length(name="f", start=Point(point_m=TIP_M), end=Point(point_m=ROOT_M))
+    assert not is_between_key_points(fixed)
     chain = Polyline(name="c", anchors=(KeyPoint(name="a"), Point(point_m=TIP_M)))
     assert [key_points_of(s) for s in (between, to_hull, of_hull, angle, chain)] == [
         {"tip", "root"},
@@ -132,7 +134,7 @@ def test_specs_know_their_key_points_and_whether_the_hull_enters():
         set(),
         {"a"},
     ]
-    assert [is_free_of_hull(s) for s in (between, to_hull, of_hull, angle, chain)] == [
+    assert [is_between_key_points(s) for s in (between, to_hull, of_hull, angle, chain)] == [
         True,
         False,
         False,
