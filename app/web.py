@@ -16,15 +16,18 @@ from app import (
     export_api,
     extraction_api,
     key_points_api,
+    measurements_api,
     silhouettes_api,
     source_api,
     thumbnails_api,
     viewport_api,
 )
+from app.attitudes import Attitudes
 from app.changes import Changes
 from app.gate import LOOPBACK_NAMES, Gate
 from app.key_point_facts import book_facts, point_facts
 from app.key_points import KeyPoints
+from app.measurement_facts import MeasurementFacts
 from app.measuring import MeasurementDesk
 from app.relay import relay
 from app.stream import LiveStream
@@ -61,12 +64,16 @@ def create_app(
     stream.observe(lambda _: app.state.changes.notify())
     app.state.viewport_pages = pages
     app.state.desk = desk
+    app.state.attitudes = Attitudes(stream, app.state.changes.notify)
+    app.state.measurement_facts = MeasurementFacts(desk, app.state.attitudes)
+    stream.also_told["measurements"] = app.state.measurement_facts
     desk.observe(lambda _: app.state.changes.notify())
     _add_key_points(app, stream, key_points)
     for part in (
         api,
         course_api,
         editing_api,
+        measurements_api,  # before those of exports, which take any name
         export_api,
         extraction_api,
         key_points_api,
