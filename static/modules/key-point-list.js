@@ -20,6 +20,7 @@ export class KeyPointList {
     for (const id of ["key-point-from", "key-point-to"]) {
       part(id).addEventListener("change", () => this.#measure());
     }
+    part("key-point-measure").addEventListener("click", () => points.measure(...this.#ends()));
   }
 
   /** Stand first while somebody marks. */
@@ -122,16 +123,20 @@ export class KeyPointList {
     this.#measure();
   }
 
+  #ends() {
+    return ["key-point-from", "key-point-to"].map((id) => part(id).value);
+  }
+
   async #measure() {
-    const [first, second] = ["key-point-from", "key-point-to"].map((id) => part(id).value);
+    const [first, second] = this.#ends();
     const output = part("key-point-value");
+    part("key-point-measure").disabled = first === second;
     if (first === second) {
       output.textContent = "Choose two different points.";
       return;
     }
-    const text = await this.#points.length(first, second).then(lengthText, (error) => error.message);
-    const isCurrent = part("key-point-from").value === first && part("key-point-to").value === second;
-    if (isCurrent) output.replaceChildren(...text);
+    const text = await this.#points.length(first, second).then(lengthText, (error) => [error.message]);
+    if (this.#ends().join("/") === [first, second].join("/")) output.replaceChildren(...text);
   }
 }
 

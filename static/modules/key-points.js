@@ -154,6 +154,18 @@ export class KeyPoints {
     return getJson(`${PATH}/length?${new URLSearchParams({ first, second })}`);
   }
 
+  /** Keep the length between two points among the measurements. */
+  async measure(first, second) {
+    const [start, end] = [first, second].map((name) => ({ kind: "key point", name }));
+    const spec = { kind: "length", name: `${first} – ${second}`, start, end };
+    try {
+      await send("POST", "/api/measurements", { spec });
+      this.#hooks.complain(`The length ${first} – ${second} is among the measurements now.`, "note");
+    } catch (error) {
+      this.#hooks.complain(error.message);
+    }
+  }
+
   /** Send one order after the other, and show what came of it. */
   #order(work) {
     this.#chain = this.#chain.then(async () => {

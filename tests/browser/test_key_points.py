@@ -87,6 +87,11 @@ def test_points_are_begun_renamed_measured_and_deleted(editing) -> None:
         press_at(page, tuple(PROJECTIONS[number - 1].image_points(other_m)))
         expect(page.locator(".key-point.active [aria-current]")).to_have_text(str(number))
     expect(page.locator("#key-point-value")).to_contain_text(re.compile(r"16\.\d\d\u202fm \["))
+    page.get_by_role("button", name="Add to measurements").click()
+    expect(page.locator("#banner")).to_contain_text("point 1 – point 2 is among the measurements")
+    (item,) = page.request.get(f"{origin(page)}/api/measurements").json()["items"]
+    assert item["low"] < np.linalg.norm(CORNER_M - other_m) < item["high"]
+    assert "from the marks of its key points" in item["interval_note"]
     row_of(page, "point 2").get_by_role("button", name="Rename").click()
     name = page.get_by_role("textbox", name="Name of point 2")
     name.fill("panel's far corner")
