@@ -8,6 +8,8 @@ export class KeyPointList {
   #points;
   #go;
   #renaming = null;
+  /** The ends of the length that was added last. */
+  #added = "";
 
   /** Show `points`, and call `go(number)` to see a frame. */
   constructor(points, go) {
@@ -20,7 +22,7 @@ export class KeyPointList {
     for (const id of ["key-point-from", "key-point-to"]) {
       part(id).addEventListener("change", () => this.#measure());
     }
-    part("key-point-measure").addEventListener("click", () => points.measure(...this.#ends()));
+    part("key-point-measure").addEventListener("click", () => this.#add());
   }
 
   /** Stand first while somebody marks. */
@@ -123,6 +125,13 @@ export class KeyPointList {
     this.#measure();
   }
 
+  async #add() {
+    const ends = this.#ends();
+    if (!(await this.#points.measure(...ends))) return;
+    this.#added = ends.join("/");
+    this.#measure();
+  }
+
   #ends() {
     return ["key-point-from", "key-point-to"].map((id) => part(id).value);
   }
@@ -130,7 +139,9 @@ export class KeyPointList {
   async #measure() {
     const [first, second] = this.#ends();
     const output = part("key-point-value");
-    part("key-point-measure").disabled = first === second;
+    const isAdded = this.#added === [first, second].join("/");
+    part("key-point-measure").disabled = first === second || isAdded;
+    part("key-point-measure").textContent = isAdded ? "Added to measurements" : "Add to measurements";
     if (first === second) {
       output.textContent = "Choose two different points.";
       return;
@@ -149,7 +160,7 @@ function lengthText({ value_m: value, low_m: low, high_m: high, direction }) {
 /** Position with its standard errors and the worst residual, or why there is none. */
 function placeLines({ marks, position_m: position, sigma_m: sigma, complaint }) {
   if (marks.length === 0) {
-    return [made("p", "quiet-line", "Choose Key point (J), then click its corner in the picture.")];
+    return [made("p", "quiet-line", "Choose Point (J), then click its corner in the picture.")];
   }
   if (!position) {
     const hint = "Other frames show it on the dashed line.";

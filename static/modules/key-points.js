@@ -154,15 +154,16 @@ export class KeyPoints {
     return getJson(`${PATH}/length?${new URLSearchParams({ first, second })}`);
   }
 
-  /** Keep the length between two points among the measurements. */
+  /** Keep the length between two points among the measurements; false where that is refused. */
   async measure(first, second) {
     const [start, end] = [first, second].map((name) => ({ kind: "key point", name }));
     const spec = { kind: "length", name: `${first} – ${second}`, start, end };
     try {
       await send("POST", "/api/measurements", { spec });
-      this.#hooks.complain(`The length ${first} – ${second} is among the measurements now.`, "note");
+      return true;
     } catch (error) {
       this.#hooks.complain(error.message);
+      return false;
     }
   }
 

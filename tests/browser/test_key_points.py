@@ -88,7 +88,7 @@ def test_points_are_begun_renamed_measured_and_deleted(editing) -> None:
         expect(page.locator(".key-point.active [aria-current]")).to_have_text(str(number))
     expect(page.locator("#key-point-value")).to_contain_text(re.compile(r"16\.\d\d\u202fm \["))
     page.get_by_role("button", name="Add to measurements").click()
-    expect(page.locator("#banner")).to_contain_text("point 1 – point 2 is among the measurements")
+    expect(page.locator("#key-point-measure")).to_have_text("Added to measurements")
     (item,) = page.request.get(f"{origin(page)}/api/measurements").json()["items"]
     assert item["low"] < np.linalg.norm(CORNER_M - other_m) < item["high"]
     assert "from the marks of its key points" in item["interval_note"]
