@@ -11,8 +11,11 @@ from app.api import Stream, record_at
 from app.editing_api import Body, refusing
 from app.key_point_facts import expectation_facts, key_point_facts, length_facts
 from app.key_points import KeyPoints
-from core.analysis.key_point_marks import KeyPointBook
+from app.measuring import MeasurementDesk
+from core.analysis.key_point_marks import KeyPointBook, checked_name
 from core.analysis.key_point_places import expectations
+from core.analysis.measurement_book import MeasurementBook
+from core.measurement.key_point_errors import key_points_of, with_key_point_renamed
 from core.measurement.key_points import KeyPoint, length_between
 
 router = APIRouter(prefix="/api/key_points")
@@ -26,7 +29,13 @@ def _key_points(connection: HTTPConnection) -> KeyPoints:
     return points
 
 
+def _desk(connection: HTTPConnection) -> MeasurementDesk:
+    desk: MeasurementDesk = connection.app.state.desk
+    return desk
+
+
 Points = Annotated[KeyPoints, Depends(_key_points)]
+Desk = Annotated[MeasurementDesk, Depends(_desk)]
 
 
 class MarkOrder(Body):
@@ -105,9 +114,12 @@ def delete_point(name: str, points: Points) -> dict[str, Any]:
 
 
 @router.put("/name")
-def put_name(order: NameOrder, points: Points) -> dict[str, Any]:
-    """Give a key point another name."""
-    return _changed(points, lambda book: book.renamed(order.name, order.new_name))
+def put_name(order: NameOrder, points: Points, desk: Desk) -> dict[str, Any]:
+    """Give a key point another name, also where measurements refer to it."""
+    facts = _changed(points, lambda book: book.renamed(order.name, order.new_name))
+    if any(order.name in key_points_of(spec) for spec in desk.book.specs):
+        desk.turn(lambda book: _following(book, order.name, checked_name(order.new_name)))
+    return facts
 
 
 @router.put("/sigma")
@@ -126,6 +138,15 @@ def undo(points: Points) -> dict[str, Any]:
 def redo(points: Points) -> dict[str, Any]:
     """Make the change again that was taken back last."""
     return _changed(points, KeyPointBook.redone)
+
+
+def _following(book: MeasurementBook, name: str, new_name: str) -> MeasurementBook:
+    """Return the book of measurements with a key point called otherwise, as one step."""
+    followed = book
+    for spec in book.specs:
+        if name in key_points_of(spec):
+            followed = followed.replaced(spec.name, with_key_point_renamed(spec, name, new_name))
+    return book.then(followed)
 
 
 def _changed(

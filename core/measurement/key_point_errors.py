@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy import stats
@@ -131,6 +132,12 @@ def key_points_of(spec: Spec) -> frozenset[str]:
     return frozenset(_names(spec))
 
 
+def with_key_point_renamed(spec: Spec, name: str, new_name: str) -> Spec:
+    """Return a spec that refers to a key point by its new name."""
+    found: Spec = _renamed(spec, name, new_name)
+    return found
+
+
 def is_between_key_points(spec: Spec) -> bool:
     """Whether a spec measures between key points only, so that the hull does not enter.
 
@@ -156,6 +163,17 @@ def _names(value: object) -> Iterator[str]:
     elif is_dataclass(value):
         for field in fields(value):
             yield from _names(getattr(value, field.name))
+
+
+def _renamed(value: Any, name: str, new_name: str) -> Any:
+    if isinstance(value, KeyPoint):
+        return KeyPoint(name=new_name) if value.name == name else value
+    if isinstance(value, tuple):
+        return tuple(_renamed(one, name, new_name) for one in value)
+    if is_dataclass(value) and not isinstance(value, type):
+        own = {field.name: getattr(value, field.name) for field in fields(value)}
+        return replace(value, **{key: _renamed(one, name, new_name) for key, one in own.items()})
+    return value
 
 
 def _touched(specs: Sequence[Spec]) -> tuple[Spec, ...]:

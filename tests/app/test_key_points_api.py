@@ -122,6 +122,24 @@ def test_a_length_between_key_points_has_its_interval(page) -> None:
     page.put("/api/key_points/sigma", json={"sigma_px": 1.0})
 
 
+def test_measurements_follow_a_key_point_to_its_new_name(page) -> None:
+    for number in (1, 2):
+        mark(page, "a", CORNER_M, number)
+        mark(page, "b", OTHER_M, number)
+    ends = {"start": {"kind": "key point", "name": "a"}, "end": {"kind": "key point", "name": "b"}}
+    page.post("/api/measurements", json={"spec": {"kind": "length", "name": "side", **ends}})
+    page.put("/api/key_points/name", json={"name": "a", "new_name": " far  end"})
+    deadline = time.monotonic() + 10
+    while time.monotonic() < deadline:
+        (item,) = page.get("/api/measurements").json()["items"]
+        if item["value"] is not None:
+            break
+        time.sleep(0.02)
+    assert item["value"] == pytest.approx(10.0)
+    assert item["low"] < 10.0 < item["high"]
+    page.post("/api/measurements/clear")
+
+
 def test_what_makes_no_sense_is_refused_and_changes_nothing(page) -> None:
     before = mark(page, "corner", CORNER_M, 1).json()
     answers = [

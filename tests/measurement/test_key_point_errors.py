@@ -3,12 +3,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from core.formats.measurement_fields import encoded
 from core.measurement.anchors import Extreme, KeyPoint, Point
 from core.measurement.intervals import Interval
 from core.measurement.key_point_errors import (
     is_between_key_points,
     key_points_of,
     marks_errors,
+    with_key_point_renamed,
     with_marks_error,
 )
 from core.measurement.key_points import length_between, located
@@ -120,6 +122,14 @@ def test_what_is_lost_when_a_key_point_moves_has_no_error():
     assert np.isnan(errors["between"])
     assert np.isnan(errors["angle"])
     assert errors["to the hull"] > 0
+
+
+def test_a_renamed_key_point_is_found_by_its_new_name_and_nothing_else_changes():
+    between, to_hull, of_hull, *_ = (with_key_point_renamed(s, "tip", "edge") for s in SPECS)
+    assert (between.start.name, between.end.name) == ("edge", "root")
+    assert to_hull.start.name == "edge"
+    assert encoded(to_hull.end) == encoded(FAR)
+    assert encoded(of_hull) == encoded(SPECS[2])
 
 
 def test_specs_know_their_key_points_and_whether_the_hull_enters():
