@@ -30,6 +30,7 @@ WIREFRAME_COLOUR: Colour = (46, 110, 190)
 GRID_COLOUR: Colour = (64, 76, 98)
 UNCARVED_COLOUR: Colour = (86, 180, 233)
 REFERENCE_COLOUR: Colour = (204, 121, 167)
+KEY_POINT_COLOUR: Colour = (255, 176, 72)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,6 +77,12 @@ LAYERS = (
         title="Outline",
         hint="Its silhouette, on the picture",
         colour=OUTLINE_COLOUR,
+    ),
+    Layer(
+        name="key-points",
+        title="Key points",
+        hint="Corners marked in two or more frames, where their marks place them",
+        colour=KEY_POINT_COLOUR,
     ),
     Layer(
         name="sights",

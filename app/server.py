@@ -13,11 +13,14 @@ from fastapi import FastAPI
 
 from app.compilation import compiling
 from app.gate import LOOPBACK_NAMES
+from app.key_points import KeyPoints
+from app.measuring import MeasurementDesk
 from app.playback import DEFAULT_SPEED_HZ, Playback
 from app.source import Source
 from app.stream import LiveStream, SurfaceOf
 from app.uncarved import UncarvedWatch
 from app.viewport import Viewport
+from app.viewport_key_points import KeyPointNodes
 from app.viewport_pages import ViewportPages
 from app.viser_server import PrivateViserServer
 from app.web import create_app
@@ -92,7 +95,9 @@ def workstation(
     stream = LiveStream(source, settings, playback=playback, surface_of=surface_of)
     viser_server = PrivateViserServer()
     viewport = Viewport(viser_server, reference=reference)
+    key_points = KeyPoints(lambda: stream.source.key)
     uncarved = UncarvedWatch(lambda: stream.volume, viewport.show_uncarved)
+    desk = MeasurementDesk(stream)
 
     def want(layers: frozenset[str]) -> None:
         viewport.want(layers)
@@ -100,12 +105,18 @@ def workstation(
 
     pages = ViewportPages(viser_server, want, has_reference=reference is not None)
     try:
-        app = create_app(stream, viser_server.address, pages)
+        app = create_app(stream, viser_server.address, pages, desk, key_points)
         stream.observe(viewport.show)
         stream.observe(uncarved.note)
+        stream.observe(desk.note)
+        stream.observe(key_points.note)
+        key_points.observe(KeyPointNodes(viser_server).show)
+        key_points.observe(lambda now: desk.set_key_points(now.places_m, now.covariances_m2))
         stream.start()
+        desk.start()
         yield app
     finally:
+        desk.stop()
         uncarved.stop()
         stream.stop()
         viser_server.stop()

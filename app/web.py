@@ -15,13 +15,20 @@ from app import (
     editing_api,
     export_api,
     extraction_api,
+    key_points_api,
+    measurements_api,
     silhouettes_api,
     source_api,
     thumbnails_api,
     viewport_api,
 )
+from app.attitudes import Attitudes
 from app.changes import Changes
 from app.gate import LOOPBACK_NAMES, Gate
+from app.key_point_facts import book_facts, point_facts
+from app.key_points import KeyPoints
+from app.measurement_facts import MeasurementFacts
+from app.measuring import MeasurementDesk
 from app.relay import relay
 from app.stream import LiveStream
 from app.thumbnails import Thumbnails
@@ -35,6 +42,8 @@ def create_app(
     stream: LiveStream,
     viewport: ViserAddress,
     pages: ViewportPages,
+    desk: MeasurementDesk,
+    key_points: KeyPoints,
     *,
     host_names: Iterable[str] = LOOPBACK_NAMES,
 ) -> FastAPI:
@@ -44,6 +53,8 @@ def create_app(
         stream: the live loop; whoever made it starts and stops it.
         viewport: where viser listens.
         pages: whose cameras and layers can be set.
+        desk: at which the hull is measured; whoever made it starts and stops it.
+        key_points: that are marked in the frames.
         host_names: names under which browsers may address the server.
     """
     app = FastAPI(title="radarhull", docs_url=None, redoc_url=None, openapi_url="/openapi.json")
@@ -52,12 +63,20 @@ def create_app(
     app.state.thumbnails = Thumbnails()
     stream.observe(lambda _: app.state.changes.notify())
     app.state.viewport_pages = pages
+    app.state.desk = desk
+    app.state.attitudes = Attitudes(stream, app.state.changes.notify)
+    app.state.measurement_facts = MeasurementFacts(desk, app.state.attitudes)
+    stream.also_told["measurements"] = app.state.measurement_facts
+    desk.observe(lambda _: app.state.changes.notify())
+    _add_key_points(app, stream, key_points)
     for part in (
         api,
         course_api,
         editing_api,
+        measurements_api,  # before those of exports, which take any name
         export_api,
         extraction_api,
+        key_points_api,
         silhouettes_api,
         source_api,
         thumbnails_api,
@@ -86,6 +105,13 @@ def static_folder() -> Path:
         f"The page's files are missing: neither {package / 'static'} nor "
         f"{package.parent / 'static'} holds an index.html. Install radarhull again."
     )
+
+
+def _add_key_points(app: FastAPI, stream: LiveStream, key_points: KeyPoints) -> None:
+    app.state.key_points = key_points
+    stream.also_told["key_points"] = lambda: point_facts(key_points.state)
+    stream.also_told["key_points_book"] = lambda: book_facts(key_points.state)
+    key_points.observe(lambda _: app.state.changes.notify())
 
 
 def _add_viewport(app: FastAPI, viewport: ViserAddress) -> None:

@@ -71,6 +71,50 @@ def epipolar_matrix(first: Projection, second: Projection) -> Floats:
     return scaled
 
 
+def epipolar_segment(
+    first: Projection, second: Projection, seen_px: Floats, *, reach_m: float
+) -> Floats | None:
+    """Return the (2, 2) ends, as (row, column), of the line on which the second view sees a point.
+
+    Whatever the first view shows at a pixel lies on that pixel's line of sight; its part near the
+    target, as the second view sees it, is the segment. The views may be of different kinds.
+
+    Args:
+        first: in which the point was seen, parallel or perspective.
+        second: parallel or perspective.
+        seen_px: (2,) where it was seen, as (row, column).
+        reach_m: how far the point may be from the target frame's origin.
+
+    Returns:
+        None where the line of sight passes the target by, or partly behind the second camera.
+
+    Source: Hartley and Zisserman, "Multiple view geometry in computer vision", 2004, 9.1.
+    """
+    nearest, direction = _line_of_sight(first, seen_px)
+    aside_m = float(np.linalg.norm(nearest))
+    if aside_m >= reach_m:
+        return None
+    half_m = np.sqrt(reach_m**2 - aside_m**2)
+    ends = nearest + np.outer([-half_m, half_m], direction)
+    if not second.is_affine and (ends @ second.matrix[2, :3] + second.matrix[2, 3] <= 0).any():
+        return None
+    return second.image_points(ends)
+
+
+def _line_of_sight(view: Projection, seen_px: Floats) -> tuple[Floats, Floats]:
+    """Return the point (3,) of a pixel's line of sight that is nearest to the origin, and its way.
+
+    Of a radar image the "line of sight" is the normal of the range–cross-range plane: along it the
+    image tells nothing.
+    """
+    if view.is_affine:
+        return view.plane_points(seen_px), view.viewing_direction()
+    inverse = np.linalg.inv(view.matrix[:, :3])
+    centre, ray = -inverse @ view.matrix[:, 3], inverse @ [*seen_px, 1.0]
+    direction: Floats = ray / np.linalg.norm(ray)
+    return centre - (centre @ direction) * direction, direction
+
+
 def common_direction(first: Projection, second: Projection) -> Floats:
     """Return the (3,) unit direction in which the image planes of two parallel views meet.
 

@@ -2,6 +2,7 @@
 
 import { brushTool, lassoTool, livewireTool, polygonTool } from "./drawing-tools.js";
 import { isInside, onCanvas } from "./frame-view.js";
+import { keyPointTool } from "./key-point-tool.js";
 import { vertexTool } from "./vertex-tool.js";
 
 const WHEEL_STEP = 0.0015;
@@ -34,6 +35,7 @@ export class Editor {
       brushTool(this, true),
       brushTool(this, false),
       livewireTool(this),
+      keyPointTool(this),
       this.#growTool(),
     ];
     this.#tools = new Map(tools.map((tool) => [tool.name, tool]));
@@ -49,6 +51,10 @@ export class Editor {
     addEventListener("keydown", (event) => event.code === "Space" && this.#holdSpace(event));
     addEventListener("keyup", (event) => event.code === "Space" && this.#letSpaceGo());
     addEventListener("blur", () => this.#letSpaceGo());
+  }
+
+  get keyPoints() {
+    return this.#hooks.keyPoints;
   }
 
   get toolName() {

@@ -20,6 +20,8 @@ export class FramePanel {
   scene = { rings: null, cursor: null, isHidden: false };
   /** Called whenever another part of the frame is on show. */
   onMoved = () => {};
+  /** Gives the key points to draw over the picture. */
+  keyPoints = () => null;
   #overlay = new Overlay(part("overlay-canvas"));
   #onChange;
   #drawing = 0;
@@ -96,6 +98,7 @@ export class FramePanel {
       shape: frame?.shape,
       isShaded: session.claim !== "complete" && this.#rule === "shadow",
       showsShadow: this.#layers.has("shadow"),
+      keyPoints: this.keyPoints(),
     });
     this.#legend.show({
       frame,

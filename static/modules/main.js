@@ -14,6 +14,7 @@ import { Proposals } from "./proposals.js";
 import { showSaved } from "./saved-view.js";
 import { Review } from "./review.js";
 import { download, fileName } from "./screenshot.js";
+import { KeyPoints } from "./key-points.js";
 import { getJson, keepLinked, send } from "./server.js";
 import { RightPane } from "./right-pane.js";
 import { bindShortcuts, fillSheet } from "./shortcuts.js";
@@ -43,12 +44,23 @@ const banner = new Banner(part("banner"));
 const panel = new FramePanel(showEditing, complain, showFrame);
 const { session, view, scene } = panel;
 const rightPane = new RightPane({ go: showFrame });
+const keyPoints = new KeyPoints({ redraw: () => panel.redraw(), complain, go: showFrame, open: () => tabs.open("tools") });
 const editor = new Editor(part("frame-canvas"), view, session, scene, {
   redraw: () => panel.redraw(),
   complain,
   onStart: stay,
-  onTool: () => toolbar?.update(),
+  onTool: (name) => {
+    toolbar?.update();
+    keyPoints.setMarking(name === "keypoint");
+  },
+  keyPoints,
   onSeed: (row, column) => proposals.seed(row, column),
+});
+panel.keyPoints = () => ({
+  marks: keyPoints.marks(),
+  expected: keyPoints.expected(),
+  active: keyPoints.active,
+  isMarking: keyPoints.isMarking,
 });
 const dynamicRange = new DynamicRange(view);
 const toolbar = new Toolbar(panel, editor, () => state?.window_m ?? null);
@@ -203,6 +215,7 @@ function showState(next) {
   panel.follow(state);
   proposals.beginWith(state.extraction);
   toolbar.offerLabels(state.frames_info);
+  keyPoints.update(state);
   space.update(state);
   share.update(state);
   bringFrame();
@@ -260,6 +273,7 @@ async function fetchFrame(key) {
 
 function showEditing() {
   toolbar?.update();
+  keyPoints?.follow(session.frame);
   rightPane.greyWhile(session.isSaving);
   proposals?.update();
   showBanner();
@@ -338,11 +352,17 @@ function openSheet() {
 
 /** One step back: the last point of what is being drawn, or else the last edit. */
 function undo() {
-  if (scene.draft) editor.remove();
+  if (keyPoints.isMarking) keyPoints.undo();
+  else if (scene.draft) editor.remove();
   else {
     proposals.discard();
     session.undo();
   }
+}
+
+function redo() {
+  if (keyPoints.isMarking) keyPoints.redo();
+  else session.redo();
 }
 
 function savePicture() {
@@ -369,7 +389,7 @@ const chooseTool = (name) => () => {
   proposals.discard();
   editor.choose(name);
 };
-const drawing = ["vertex", "polygon", "lasso", "brush", "eraser", "livewire"];
+const drawing = ["vertex", "polygon", "lasso", "brush", "eraser", "livewire", "keypoint"];
 const proposing = ["threshold", "grow", "snap", "copy previous", "copy next", "reprojection"];
 const reviewing = ["todo", "ok", "fix"];
 const named = (names, make) => Object.fromEntries(names.map((name) => [name, make(name)]));
@@ -385,7 +405,11 @@ bindShortcuts(
     larger: () => toolbar.scaleBrush(1.25),
     claim: () => toolbar.toggleClaim(),
     undo,
-    redo: () => session.redo(),
+    redo,
+    "new keypoint": () => {
+      chooseTool("keypoint")();
+      keyPoints.begin();
+    },
     enter,
     escape,
     excluded: toggleExcluded,

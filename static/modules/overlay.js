@@ -5,6 +5,7 @@
 
 import { clipTo, onCanvas } from "./frame-view.js";
 import { Hatcher } from "./hatching.js";
+import { drawKeyPoints } from "./key-point-overlay.js";
 import { between, middleOf, shadowStrips } from "./rings.js";
 
 export const COLOURS = {
@@ -54,9 +55,11 @@ export class Overlay {
     if (scene.mine) this.#line(context, scene.mine, COLOURS.mine, 1.5, [7, 4]);
     this.#line(context, scene.rings, COLOURS.outline, 1.75, []);
     if (scene.proposal) this.#line(context, scene.proposal, COLOURS.proposal, 1.75, [6, 4]);
-    if (scene.isEditable && !scene.proposal) this.#drawHandles(context, scene);
+    const hasHandles = scene.isEditable && !scene.proposal && !scene.keyPoints?.isMarking;
+    if (hasHandles) this.#drawHandles(context, scene);
     if (scene.draft) this.#drawDraft(context, scene);
     if (scene.brush) this.#drawBrush(context, scene.brush);
+    if (scene.keyPoints) drawKeyPoints(context, plot, scene.keyPoints);
     context.restore();
     drawClaim(context, plot, scene);
   }

@@ -20,6 +20,12 @@ const GROUPS = [
     ["undo", "Ctrl Z", ["$mod+z"], "Undo on this frame; with nothing to undo here, go to the last edit"],
     ["redo", "Ctrl Shift Z", ["$mod+Shift+z", "$mod+y"], "Redo, likewise"],
   ]],
+  ["Key points", [
+    ["keypoint", "J", ["j"], "Mark the active key point; drag its cross to adjust it"],
+    ["new keypoint", "Shift J", ["Shift+j"], "Begin another key point"],
+    [null, "Del", [], "Take its mark in this frame away"],
+    [null, "Ctrl Z", [], "With this tool: undo on key points, not on the outline"],
+  ]],
   ["Proposals", [
     ["threshold", "T", ["t"], "Detect anew by a threshold"],
     ["grow", "F", ["f"], "Fill a region that grows from a point"],

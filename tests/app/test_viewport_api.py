@@ -20,7 +20,16 @@ CAMERA = {
 def test_the_page_is_told_what_it_can_choose(client: httpx.Client) -> None:
     choices = client.get("/api/viewport").json()
     names = [layer["name"] for layer in choices["layers"]]
-    assert names == ["hull", "wireframe", "picture", "outline", "sights", "grid", "uncarved"]
+    assert names == [
+        "hull",
+        "wireframe",
+        "picture",
+        "outline",
+        "key-points",
+        "sights",
+        "grid",
+        "uncarved",
+    ]
     assert {layer["name"] for layer in choices["layers"] if layer["is_on"]} == FIRST_LAYERS
     assert all(layer["hint"] and layer["colour"][0] == "#" for layer in choices["layers"])
     assert choices["components"] == [{"label": "target", "colour": "#a8b8cc"}]

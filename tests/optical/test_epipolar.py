@@ -10,6 +10,7 @@ from core.optical.epipolar import (
     common_direction,
     cross_matrix,
     epipolar_matrix,
+    epipolar_segment,
     essential_matrix,
     relative_pose,
 )
@@ -125,3 +126,48 @@ def test_views_that_do_not_constrain_each_other_are_refused():
 def test_the_cross_matrix_is_the_cross_product(seed):
     one, other = np.random.default_rng(seed).normal(size=(2, 3))
     assert cross_matrix(one) @ other == pytest.approx(np.cross(one, other))
+
+
+@given(seed=seeds, is_first_parallel=st.booleans(), is_second_parallel=st.booleans())
+def test_the_second_view_sees_a_point_on_its_segment(seed, is_first_parallel, is_second_parallel):
+    poses, points = two_poses(seed)
+    first, second = (
+        affine_camera(rotation, pixel_m=0.05, shape=(480, 640))
+        if is_parallel
+        else camera_projection(INTRINSICS, rotation, translation)
+        for (rotation, translation), is_parallel in zip(
+            poses, (is_first_parallel, is_second_parallel), strict=True
+        )
+    )
+    for point in points:
+        seen = first.image_points(point)
+        start, end = epipolar_segment(first, second, seen, reach_m=12.0)
+        step, off = end - start, second.image_points(point) - start
+        across = (off[0] * step[1] - off[1] * step[0]) / np.linalg.norm(step)
+        assert across == pytest.approx(0.0, abs=1e-5)
+        assert 0 <= off @ step <= step @ step
+        if is_first_parallel == is_second_parallel:
+            line = epipolar_matrix(first, second) @ [*seen, 1.0]
+            assert np.array([[*start, 1.0], [*end, 1.0]]) @ line == pytest.approx(0.0, abs=1e-6)
+
+
+@given(seed=seeds)
+def test_a_segment_ends_where_the_target_may_end(seed):
+    poses, points = two_poses(seed)
+    views = [affine_camera(rotation, pixel_m=0.05, shape=(480, 640)) for rotation, _ in poses]
+    seen = views[0].image_points(points[0])
+    ends = epipolar_segment(*views, seen, reach_m=12.0)
+    sine = np.linalg.norm(np.cross(*(view.viewing_direction() for view in views)))
+    aside_m = np.linalg.norm(views[0].plane_points(seen))
+    half_m = 0.5 * 0.05 * np.linalg.norm(ends[1] - ends[0]) / sine
+    assert np.hypot(half_m, aside_m) == pytest.approx(12.0, rel=1e-6)
+    assert epipolar_segment(*views, seen, reach_m=0.99 * aside_m) is None
+
+
+def test_a_line_of_sight_partly_behind_the_second_camera_has_no_segment():
+    ahead = camera_projection(INTRINSICS, np.eye(3), np.array([0.0, 0.0, 5.0]))
+    side = affine_camera(np.eye(3)[[2, 1, 0]] * [[1], [-1], [1]], pixel_m=0.05, shape=(480, 640))
+    seen = side.image_points(np.array([0.0, 0.0, -3.0]))
+    assert epipolar_segment(side, ahead, seen, reach_m=12.0) is not None
+    behind = side.image_points(np.array([0.0, 0.0, -6.0]))
+    assert epipolar_segment(side, ahead, behind, reach_m=12.0) is None
