@@ -7,14 +7,14 @@ import { count, fixed, frames, timeText, vector, withUnit } from "./numbers.js";
 export function frameRows(frame) {
   return [
     ["Time", timeText(frame.time_s, frame.label)],
-    ["Line of sight x, y, z", vector(frame.line_of_sight)],
-    ["θ, φ in the target frame", `${fixed(frame.theta_deg, 1)}°, ${fixed(frame.phi_deg, 1)}°`],
+    ["Line of sight", frame.line_of_sight.map((part, axis) => `${"xyz"[axis]}\u00a0${fixed(part, 2)}`).join(", ")],
+    ["θ, φ", `${fixed(frame.theta_deg, 1)}°, ${fixed(frame.phi_deg, 1)}° in the target frame`],
     [
       "Resolution",
       frame.row_resolution_m === null
         ? "unknown"
-        : `range ${withUnit(frame.row_resolution_m, 2, "m")}, ` +
-          `cross-range ${withUnit(frame.column_resolution_m, 2, "m")}`,
+        : `range\u00a0${withUnit(frame.row_resolution_m, 2, "m")}, ` +
+          `cross-range\u00a0${withUnit(frame.column_resolution_m, 2, "m")}`,
     ],
     ["Interval", intervalText(frame.interval)],
     ["Silhouette", silhouetteText(frame)],
