@@ -158,7 +158,7 @@ export class Session {
     const target = this.targetOf(direction);
     if (target !== number) return target === null ? this.#chain : this.#onGo(target);
     return this.#queue(async () => {
-      await this.#preview.stop();
+      this.#preview.forget();
       const body = { base_revision: this.#revisions.get(number) };
       const frame = await send("POST", `/api/frames/${number}/${direction}`, body);
       this.#trail.note(direction, number);
@@ -192,8 +192,8 @@ export class Session {
       this.conflict = { ...this.conflict, ...body };
       return undefined;
     }
-    // A preview that came after what it previews would stand in its place.
-    await this.#preview.stop();
+    // One under way is not waited for: after this the server refuses it as made from an old outline.
+    this.#preview.forget();
     this.#hasPreview = false;
     body.base_revision = this.#revisions.get(number);
     try {
