@@ -87,8 +87,9 @@ export function showExtents(body, extents) {
 
 function extentCell(extent) {
   if (!extent.is_bounded) {
-    const cell = element("td", "not bounded by these views");
+    const cell = element("td", "not bounded");
     cell.className = "open";
+    cell.title = "The views do not close the hull along this axis, so there is no length to give";
     return cell;
   }
   const cell = element("td", fixed(extent.value_m, 2));

@@ -30,6 +30,7 @@ export class Timeline {
     });
     parts.toggle.addEventListener("click", () => this.#open(parts.course.hidden));
     this.#isOpen = remembered();
+    this.#open(this.#isOpen, { isAsked: false });
   }
 
   #isOpen;
@@ -68,7 +69,8 @@ export class Timeline {
   #open(isOpen, { isAsked = true } = {}) {
     if (isAsked) remember((this.#isOpen = isOpen));
     const { course, toggle } = this.#parts;
-    course.hidden = !isOpen || this.#axis === null || this.#axis.spans.length === 0;
+    // Before the passes are known their room is kept, so that nothing moves when they come.
+    course.hidden = !isOpen || this.#axis?.spans.length === 0;
     toggle.ariaPressed = String(!course.hidden);
   }
 
