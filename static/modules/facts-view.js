@@ -52,10 +52,14 @@ export function hullRows(hull, light, latencyMs) {
     ["Vertices", count(hull.vertices)],
     ["Faces", count(hull.faces)],
   ];
-  if (latencyMs !== null) rows.push(["Followed the last edit in", withUnit(latencyMs, 0, "ms")]);
+  if (latencyMs !== null) rows.push(["Followed the last edit in", durationText(latencyMs)]);
   if (light === null) return rows;
   const off = withUnit(1000 * light.error_m, 1, "mm");
   return [...rows, ["Drawn with", `${count(light.faces)} faces, ${off} off at most`]];
+}
+
+function durationText(ms) {
+  return ms < 1000 ? withUnit(ms, 0, "ms") : withUnit(ms / 1000, 1, "s");
 }
 
 /** Replace the rows of a description list. */

@@ -105,7 +105,7 @@ export function hashOf({ frame, camera, layers }) {
   if (camera !== null) {
     const { position, look_at: lookAt, up, field_of_view_deg: fieldOfView } = camera;
     const numbers = [...position, ...lookAt, ...up, fieldOfView];
-    parts.push(`camera=${numbers.map((number) => Number(number.toPrecision(7))).join(",")}`);
+    parts.push(`camera=${numbers.map((number) => Number(number.toFixed(6))).join(",")}`);
   }
   parts.push(`layers=${layers.map(encodeURIComponent).join(",")}`);
   return parts.join("&");

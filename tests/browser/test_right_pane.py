@@ -19,6 +19,7 @@ COURSE = {
             "time_s": [0, 30, 60],
             "azimuth_deg": [350, 10, 30],
             "elevation_deg": [10, 60, 20],
+            "intervals": [],
         }
     ]
 }
