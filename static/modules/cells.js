@@ -16,6 +16,10 @@ export class Cells {
   constructor(host, show) {
     this.#host = host;
     this.#scrub = new Latest((number) => show(number === this.#state.frames ? null : number));
+    new ResizeObserver(() => {
+      this.#inView = null;
+      if (this.#state) this.#bringIntoView();
+    }).observe(host);
     host.addEventListener("click", (event) => this.#choose(event.target));
     host.addEventListener("pointermove", (event) => {
       if (event.buttons === 1) this.#choose(document.elementFromPoint(event.clientX, event.clientY));
