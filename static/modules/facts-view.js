@@ -1,7 +1,7 @@
 // What is known of the frame and of the hull, in words and numbers.
 
 import { leastSeen, nearestAxis } from "./directions.js";
-import { count, fixed, frames, timeText, vector, withUnit } from "./numbers.js";
+import { count, fixed, frames, keptTogether, timeText, vector, withUnit } from "./numbers.js";
 
 /** The rows that describe a frame. */
 export function frameRows(frame) {
@@ -13,8 +13,8 @@ export function frameRows(frame) {
       "Resolution",
       frame.row_resolution_m === null
         ? "unknown"
-        : `range\u00a0${withUnit(frame.row_resolution_m, 2, "m")}, ` +
-          `cross-range\u00a0${withUnit(frame.column_resolution_m, 2, "m")}`,
+        : `${withUnit(frame.row_resolution_m, 2, "m")} in range, ` +
+          `${withUnit(frame.column_resolution_m, 2, "m")} in cross-range`,
     ],
     ["Interval", intervalText(frame.interval)],
     ["Silhouette", silhouetteText(frame)],
@@ -32,7 +32,7 @@ function intervalText(interval) {
     start != null && stop != null && withUnit(stop - start, 1, "s"),
     pulses != null && `${count(pulses)} pulses`,
   ].filter(Boolean).join(", ");
-  const why = verdict === "accepted" || !reason ? "" : `: ${reason}`;
+  const why = verdict === "accepted" || !reason ? "" : `: ${keptTogether(reason)}`;
   return `${[verdict, size].filter(Boolean).join(", ")}${why}`;
 }
 

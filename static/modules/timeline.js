@@ -2,7 +2,7 @@
 
 import { CoursePlots } from "./course-plots.js";
 import { Latest } from "./latest.js";
-import { withUnit } from "./numbers.js";
+import { keptTogether, withUnit } from "./numbers.js";
 import { PassAxis } from "./pass-axis.js";
 import { valueAt } from "./quantities.js";
 import { getJson } from "./server.js";
@@ -119,7 +119,7 @@ export class Timeline {
   #explain({ judged }, interval, left) {
     const { note, plots } = this.#parts;
     if (!interval || interval.verdict === "accepted") return;
-    note.textContent = `${interval.verdict}: ${interval.reason}. ${judged}`;
+    note.textContent = keptTogether(`${interval.verdict}: ${interval.reason}. ${judged}`);
     note.hidden = false;
     const most = plots.clientWidth - note.offsetWidth;
     note.style.left = `${plots.offsetLeft + Math.min(Math.max(left - note.offsetWidth / 2, 0), most)}px`;

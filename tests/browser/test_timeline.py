@@ -163,8 +163,6 @@ def test_cells_show_pictures_that_follow_edits_and_what_frames_do_to_the_hull(vi
 
 def test_bars_tell_what_a_frame_causes_and_suffers_grey_once_the_hull_has_moved_on(timeline) -> None:
     page = timeline(source(4), 4)
-    cells = page.locator("#cells")
-    expect(cells).not_to_have_class(re.compile("residuals"))
     shares = """async (revision) => {
       const { Cells } = await import("./modules/cells.js");
       const state = await (await fetch("/api/state")).json();
