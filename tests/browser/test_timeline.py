@@ -161,7 +161,7 @@ def test_cells_show_pictures_that_follow_edits_and_what_frames_do_to_the_hull(vi
     assert visited.complaints == []
 
 
-def test_bars_tell_what_a_frame_causes_and_suffers_grey_once_the_hull_has_moved_on(timeline) -> None:
+def test_bars_tell_causes_and_suffers_grey_once_the_hull_has_moved_on(timeline) -> None:
     page = timeline(source(4), 4)
     shares = """async (revision) => {
       const { Cells } = await import("./modules/cells.js");
