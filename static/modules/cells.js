@@ -16,6 +16,10 @@ export class Cells {
   constructor(host, show) {
     this.#host = host;
     this.#scrub = new Latest((number) => show(number === this.#state.frames ? null : number));
+    new ResizeObserver(() => {
+      this.#inView = null;
+      if (this.#state) this.#bringIntoView();
+    }).observe(host);
     host.addEventListener("click", (event) => this.#choose(event.target));
     host.addEventListener("pointermove", (event) => {
       if (event.buttons === 1) this.#choose(document.elementFromPoint(event.clientX, event.clientY));
@@ -95,7 +99,7 @@ function furnish(cell, number) {
   image.draggable = false;
   const bars = document.createElement("span");
   bars.className = "bars";
-  bars.append(bar("blame"), bar("uncovered"));
+  bars.append(bar("causes"), bar("suffers"));
   const band = document.createElement("span");
   band.className = "band";
   cell.append(image, bars, band);
@@ -121,8 +125,8 @@ function words(state, number, info, residual) {
   const edited = info?.edited ? ["edited"] : [];
   const residuals = residual
     ? [
-        `blame ${withUnit(residual.causes_m3, 2, "m³")}`,
-        `uncovered ${withUnit(residual.suffers_m2, 2, "m²")}`,
+        `causes ${withUnit(residual.causes_m3, 2, "m³")}`,
+        `suffers ${withUnit(residual.suffers_m2, 2, "m²")}`,
       ]
     : [];
   return [`Frame ${number}`, time, ...review, ...edited, ...residuals];
@@ -146,7 +150,7 @@ function scaledResiduals({ residuals, hull }) {
 }
 
 function showBars(cell, residual) {
-  const [blame, uncovered] = cell.querySelectorAll(".bars i");
-  blame.style.setProperty("--share", residual?.causes ?? 0);
-  uncovered.style.setProperty("--share", residual?.suffers ?? 0);
+  const [causes, suffers] = cell.querySelectorAll(".bars i");
+  causes.style.setProperty("--share", residual?.causes ?? 0);
+  suffers.style.setProperty("--share", residual?.suffers ?? 0);
 }

@@ -220,7 +220,8 @@ export class CoursePlots {
   #fit() {
     if (this.#host.clientWidth === 0) return;
     for (const { plot, isLast } of this.#plots) plot.setSize(this.#size(isLast));
-    this.setFrames(this.#frames, this.#shown);
+    // uPlot takes a new size on in a microtask; places measured before it would be the old ones.
+    queueMicrotask(() => this.setFrames(this.#frames, this.#shown));
   }
 }
 

@@ -1,20 +1,20 @@
 // What is known of the frame and of the hull, in words and numbers.
 
 import { leastSeen, nearestAxis } from "./directions.js";
-import { count, fixed, frames, timeText, vector, withUnit } from "./numbers.js";
+import { count, fixed, frames, keptTogether, timeText, vector, withUnit } from "./numbers.js";
 
 /** The rows that describe a frame. */
 export function frameRows(frame) {
   return [
     ["Time", timeText(frame.time_s, frame.label)],
-    ["Line of sight x, y, z", vector(frame.line_of_sight)],
-    ["θ, φ in the target frame", `${fixed(frame.theta_deg, 1)}°, ${fixed(frame.phi_deg, 1)}°`],
+    ["Line of sight", frame.line_of_sight.map((part, axis) => `${"xyz"[axis]}\u00a0${fixed(part, 2)}`).join(", ")],
+    ["θ, φ", `${fixed(frame.theta_deg, 1)}°, ${fixed(frame.phi_deg, 1)}° in the target frame`],
     [
       "Resolution",
       frame.row_resolution_m === null
         ? "unknown"
-        : `range ${withUnit(frame.row_resolution_m, 2, "m")}, ` +
-          `cross-range ${withUnit(frame.column_resolution_m, 2, "m")}`,
+        : `${withUnit(frame.row_resolution_m, 2, "m")} in range, ` +
+          `${withUnit(frame.column_resolution_m, 2, "m")} in cross-range`,
     ],
     ["Interval", intervalText(frame.interval)],
     ["Silhouette", silhouetteText(frame)],
@@ -32,7 +32,7 @@ function intervalText(interval) {
     start != null && stop != null && withUnit(stop - start, 1, "s"),
     pulses != null && `${count(pulses)} pulses`,
   ].filter(Boolean).join(", ");
-  const why = verdict === "accepted" || !reason ? "" : `: ${reason}`;
+  const why = verdict === "accepted" || !reason ? "" : `: ${keptTogether(reason)}`;
   return `${[verdict, size].filter(Boolean).join(", ")}${why}`;
 }
 
@@ -52,10 +52,14 @@ export function hullRows(hull, light, latencyMs) {
     ["Vertices", count(hull.vertices)],
     ["Faces", count(hull.faces)],
   ];
-  if (latencyMs !== null) rows.push(["Followed the last edit in", withUnit(latencyMs, 0, "ms")]);
+  if (latencyMs !== null) rows.push(["Followed the last edit in", durationText(latencyMs)]);
   if (light === null) return rows;
   const off = withUnit(1000 * light.error_m, 1, "mm");
   return [...rows, ["Drawn with", `${count(light.faces)} faces, ${off} off at most`]];
+}
+
+function durationText(ms) {
+  return ms < 1000 ? withUnit(ms, 0, "ms") : withUnit(ms / 1000, 1, "s");
 }
 
 /** Replace the rows of a description list. */
@@ -87,8 +91,9 @@ export function showExtents(body, extents) {
 
 function extentCell(extent) {
   if (!extent.is_bounded) {
-    const cell = element("td", "not bounded by these views");
+    const cell = element("td", "not bounded");
     cell.className = "open";
+    cell.title = "The views do not close the hull along this axis, so there is no length to give";
     return cell;
   }
   const cell = element("td", fixed(extent.value_m, 2));

@@ -23,7 +23,7 @@ export function showHull(state) {
   part("space-empty").hidden = hull !== null;
   part("space-empty").textContent = waiting;
   part("space-stamp").textContent =
-    hull === null ? "" : `hull of ${views(hull.views)}, picture of frame ${state.shown}`;
+    hull === null ? "" : `hull of ${views(hull.views)}, frame ${state.shown}`;
   part("hull-body").dataset.frames = hull?.frames ?? 0;
   part("hull-body").dataset.run = state.run;
   part("hull-body").dataset.revision = hull?.revision ?? 0;

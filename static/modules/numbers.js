@@ -14,6 +14,11 @@ export function withUnit(value, decimals, unit) {
   return `${fixed(value, decimals)}${SPACE}${unit}`;
 }
 
+/** A sentence in which no line ends between a number and its unit. */
+export function keptTogether(sentence) {
+  return sentence.replace(/(\d) (?=(m|px|rad|s)\b)/g, "$1\u00a0");
+}
+
 /** A count with thousands set apart. */
 export function count(value) {
   return String(value).replace(/\B(?=(\d{3})+$)/g, SPACE);

@@ -6,11 +6,12 @@ import { propose } from "./server.js";
 
 const FRAME = { before: -1, after: 1 };
 
-/** Each tool: its name on the server, its label, and settings [key, label, low, high, step, at first, unit]. */
+/** Each tool: its name on the server, its label and keys, and settings [key, label, low, high, step, at first, unit]. */
 const TOOLS = [
   {
     name: "threshold",
     label: "Threshold",
+    keys: "T",
     hint: "Detects the target anew.",
     settings: [
       ["a1", "Censoring a₁", 1, 10, 0.25, 3, ""],
@@ -21,6 +22,7 @@ const TOOLS = [
   {
     name: "grow",
     label: "Fill a region",
+    keys: "F",
     hint: "Click the picture where the target is.",
     settings: [["tolerance_db", "Tolerance", 1, 30, 0.5, 8, "dB"]],
     needsSeed: true,
@@ -28,13 +30,14 @@ const TOOLS = [
   {
     name: "snap",
     label: "Snap to edge",
+    keys: "S",
     hint: "Moves vertices to the strongest edge in reach.",
     settings: [["reach_px", "Reach", 1, 20, 0.5, 5, "px"]],
   },
   {
     name: "smooth",
     label: "Smooth",
-    hint: "",
+    hint: "Takes fine wiggles out of the outline.",
     settings: [["strength_px", "Strength", 0.5, 10, 0.5, 1.5, "px"]],
   },
   {
@@ -43,12 +46,12 @@ const TOOLS = [
     hint: "Takes out vertices that move the outline by less.",
     settings: [["tolerance_px", "Tolerance", 0.05, 5, 0.05, 0.5, "px"]],
   },
-  { name: "fill holes", label: "Fill holes", hint: "", settings: [] },
+  { name: "fill holes", label: "Fill holes", hint: "Takes the holes out of the outline.", settings: [] },
   { name: "grabcut", label: "GrabCut", hint: "Parts bright from dark, beginning at the outline.", settings: [], sensor: "optical" },
-  { name: "copy", key: "copy previous", label: "Copy previous", hint: "", settings: [], from: "before" },
-  { name: "copy", key: "copy next", label: "Copy next", hint: "", settings: [], from: "after" },
+  { name: "copy", key: "copy previous", label: "Copy previous", keys: "C", hint: "The outline of the frame before.", settings: [], from: "before" },
+  { name: "copy", key: "copy next", label: "Copy next", keys: "Shift C", hint: "The outline of the frame after.", settings: [], from: "after" },
   { name: "interpolate", label: "Interpolate", hint: "Between the frames before and after.", settings: [], from: "both" },
-  { name: "reprojection", label: "From the hull", hint: "The hull as this frame sees it.", settings: [] },
+  { name: "reprojection", label: "From the hull", keys: "U", hint: "The hull as this frame sees it.", settings: [] },
 ];
 
 export class Proposals {
@@ -200,6 +203,7 @@ export class Proposals {
     button.type = "button";
     button.dataset.key = keyOf(tool);
     button.textContent = tool.label;
+    button.title = [tool.hint, tool.keys && `(${tool.keys})`].filter(Boolean).join(" ");
     button.ariaPressed = "false";
     button.addEventListener("click", () => this.choose(keyOf(tool)));
     return button;

@@ -1,6 +1,6 @@
 // How far each frame's outline has been reviewed, and going from frame to frame.
 
-export const STATES = { todo: "to do", ok: "ok", fix: "to fix", excluded: "excluded" };
+export const STATES = { todo: "to do", ok: "OK", fix: "to fix", excluded: "excluded" };
 
 export class Review {
   #parts;

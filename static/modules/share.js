@@ -105,7 +105,9 @@ export function hashOf({ frame, camera, layers }) {
   if (camera !== null) {
     const { position, look_at: lookAt, up, field_of_view_deg: fieldOfView } = camera;
     const numbers = [...position, ...lookAt, ...up, fieldOfView];
-    parts.push(`camera=${numbers.map((number) => Number(number.toPrecision(7))).join(",")}`);
+    // What rounding left of nothing would be read aloud as 1.27e-33; small tilts are kept.
+    const rounded = (number) => (Math.abs(number) < 1e-15 ? 0 : Number(number.toPrecision(7)));
+    parts.push(`camera=${numbers.map(rounded).join(",")}`);
   }
   parts.push(`layers=${layers.map(encodeURIComponent).join(",")}`);
   return parts.join("&");

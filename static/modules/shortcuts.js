@@ -38,7 +38,7 @@ const GROUPS = [
   ]],
   ["Review", [
     ["todo", "1", ["1"], "To do"],
-    ["ok", "2", ["2"], "Ok"],
+    ["ok", "2", ["2"], "OK"],
     ["fix", "3", ["3"], "To fix"],
     ["excluded", "X", ["x"], "Exclude from the hull, or take back in: what if without it?"],
     [null, "Enter", [], "Accept and go to the next frame to do"],

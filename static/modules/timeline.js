@@ -2,7 +2,7 @@
 
 import { CoursePlots } from "./course-plots.js";
 import { Latest } from "./latest.js";
-import { withUnit } from "./numbers.js";
+import { keptTogether, withUnit } from "./numbers.js";
 import { PassAxis } from "./pass-axis.js";
 import { valueAt } from "./quantities.js";
 import { getJson } from "./server.js";
@@ -30,6 +30,7 @@ export class Timeline {
     });
     parts.toggle.addEventListener("click", () => this.#open(parts.course.hidden));
     this.#isOpen = remembered();
+    this.#open(this.#isOpen, { isAsked: false });
   }
 
   #isOpen;
@@ -68,7 +69,8 @@ export class Timeline {
   #open(isOpen, { isAsked = true } = {}) {
     if (isAsked) remember((this.#isOpen = isOpen));
     const { course, toggle } = this.#parts;
-    course.hidden = !isOpen || this.#axis === null || this.#axis.spans.length === 0;
+    // Before the passes are known their room is kept, so that nothing moves when they come.
+    course.hidden = !isOpen || this.#axis?.spans.length === 0;
     toggle.ariaPressed = String(!course.hidden);
   }
 
@@ -117,7 +119,7 @@ export class Timeline {
   #explain({ judged }, interval, left) {
     const { note, plots } = this.#parts;
     if (!interval || interval.verdict === "accepted") return;
-    note.textContent = `${interval.verdict}: ${interval.reason}. ${judged}`;
+    note.textContent = keptTogether(`${interval.verdict}: ${interval.reason}. ${judged}`);
     note.hidden = false;
     const most = plots.clientWidth - note.offsetWidth;
     note.style.left = `${plots.offsetLeft + Math.min(Math.max(left - note.offsetWidth / 2, 0), most)}px`;

@@ -102,7 +102,7 @@ export class Transport {
 
 function reelText(state) {
   if (state.shown === null) return "No frame yet";
-  const hull = `hull of ${views(state.hull.views)} so far`;
+  const hull = `hull of ${views(state.hull.views)}${state.status === "finished" ? "" : " so far"}`;
   if (state.following) return `Showing the latest, frame ${state.shown}; ${hull}`;
   return `Showing frame ${state.shown}; ${hull}`;
 }

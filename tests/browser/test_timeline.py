@@ -161,10 +161,8 @@ def test_cells_show_pictures_that_follow_edits_and_what_frames_do_to_the_hull(vi
     assert visited.complaints == []
 
 
-def test_bars_tell_blame_and_what_is_uncovered_grey_once_the_hull_has_moved_on(timeline) -> None:
+def test_bars_tell_causes_and_suffers_grey_once_the_hull_has_moved_on(timeline) -> None:
     page = timeline(source(4), 4)
-    cells = page.locator("#cells")
-    expect(cells).not_to_have_class(re.compile("residuals"))
     shares = """async (revision) => {
       const { Cells } = await import("./modules/cells.js");
       const state = await (await fetch("/api/state")).json();
@@ -182,6 +180,6 @@ def test_bars_tell_blame_and_what_is_uncovered_grey_once_the_hull_has_moved_on(t
     }"""
     fresh = page.evaluate(shares, 0)
     assert fresh["bars"] == ["0.25", "0", "1", "1", "0", "0", "0", "0"]
-    assert "blame 2.00\u202fm³, uncovered 3.00\u202fm²" in fresh["title"]
+    assert "causes 2.00\u202fm³, suffers 3.00\u202fm²" in fresh["title"]
     assert "old-residuals" not in fresh["classes"]
     assert "old-residuals" in page.evaluate(shares, -1)["classes"]
