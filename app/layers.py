@@ -3,10 +3,9 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-Colour = tuple[int, int, int]
+from core.silhouettes.silhouette import WHOLE
 
-WHOLE = "target"
-"""The component that outlines carry unless the analyst names another."""
+Colour = tuple[int, int, int]
 
 COMPONENT_COLOURS: tuple[Colour, ...] = (
     (168, 184, 204),
