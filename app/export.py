@@ -102,7 +102,7 @@ _COLUMNS = (
 
 
 def _check_kept(snapshot: Snapshot) -> None:
-    if snapshot.hull is not None and snapshot.hull.is_preview:
+    if snapshot.is_preview:
         raise ValueError("The hull follows an outline that is not kept yet; keep or discard it.")
 
 

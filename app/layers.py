@@ -56,7 +56,12 @@ class Layer:
 
 
 LAYERS = (
-    Layer(name="hull", title="Hull", hint="The hull's surface", colour=COMPONENT_COLOURS[0]),
+    Layer(
+        name="hull",
+        title="Hull",
+        hint="The target's hull; translucent while parts have hulls of their own, which show in it",
+        colour=COMPONENT_COLOURS[0],
+    ),
     Layer(
         name="wireframe",
         title="Wireframe",
@@ -134,7 +139,6 @@ def component_colours(labels: Iterable[str]) -> dict[str, Colour]:
     }
 
 
-def hull_component(labels: Iterable[str]) -> str:
-    """Return the component that a hull of outlines with these labels shows."""
-    distinct = set(labels)
-    return distinct.pop() if len(distinct) == 1 else WHOLE
+def css(colour: Colour) -> str:
+    """Return a colour as style sheets write it."""
+    return "#" + "".join(f"{part:02x}" for part in colour)

@@ -5,12 +5,13 @@ from typing import Literal
 
 from core.analysis.frames import AnalysedFrame
 from core.analysis.hull import Hull
+from core.analysis.hulls import PartHull
 from core.frame import Frame
 from core.hull.simplification import Simplified
 from core.hull.surface import Surface
 from core.measurement.residuals import Residual
 from core.reconstruction import ReconstructionSettings
-from core.silhouettes.silhouette import Silhouette
+from core.silhouettes.silhouette import WHOLE, Silhouette
 
 Status = Literal["empty", "preparing", "playing", "paused", "finished", "failed"]
 
@@ -70,6 +71,7 @@ class Snapshot:
         records: one per frame so far, oldest first.
         hull: what is known of the hull of all of them, None before the first.
         surface: of that hull, None before the first frame.
+        parts: hulls of the target's parts that have an outline in some frame, by label.
         light: the same with fewer faces for the browser to draw once nothing changes it, None
             until then and where the hull has few enough.
         residuals: of the latest hull that was quiet long enough, None before one.
@@ -86,6 +88,7 @@ class Snapshot:
     records: tuple[Record, ...] = ()
     hull: Hull | None = None
     surface: Surface | None = None
+    parts: tuple[PartHull, ...] = ()
     light: Simplified | None = None
     residuals: HullResiduals | None = None
     chosen: int | None = None
@@ -97,6 +100,25 @@ class Snapshot:
         if not self.records:
             return None
         return self.records[-1 if self.chosen is None else self.chosen - 1]
+
+    @property
+    def is_preview(self) -> bool:
+        """Whether a hull follows an outline that is not kept."""
+        hulls = [self.hull, *(part.hull for part in self.parts)]
+        return any(hull is not None and hull.is_preview for hull in hulls)
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Labels of what has a hull of its own, the whole target first."""
+        return (WHOLE, *(part.label for part in self.parts))
+
+    def carved(self, component: str) -> tuple[Hull, Surface] | None:
+        """Return the hull of a component with its surface, None where it has none."""
+        if component == WHOLE:
+            if self.hull is None or self.surface is None:
+                return None
+            return self.hull, self.surface
+        return next(((p.hull, p.surface) for p in self.parts if p.label == component), None)
 
     @property
     def drawn(self) -> Surface | None:

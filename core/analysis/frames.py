@@ -69,7 +69,7 @@ class AnalysedFrame:
     @property
     def note(self) -> str:
         """What a person should know of it, empty if nothing."""
-        return not_voting_note(self.number, self.ballot.unfit or self._held_back)
+        return self.note_of(WHOLE)
 
     @property
     def _held_back(self) -> str:
@@ -77,6 +77,10 @@ class AnalysedFrame:
         if self.state == "excluded":
             return "is excluded"
         return "" if self.is_in_range else OUT_OF_RANGE
+
+    def note_of(self, component: str) -> str:
+        """Return what a person should know of a component in it, empty if nothing."""
+        return not_voting_note(self.number, self.layer(component).ballot.unfit or self._held_back)
 
     def layer(self, component: str) -> OutlineLayer:
         """Return the outline of a component, an empty one where nobody has drawn it."""

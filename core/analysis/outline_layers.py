@@ -86,13 +86,19 @@ def undrawn(component: str, whole: OutlineLayer, first_revision: int) -> Outline
     first = Outlined(silhouette=empty, tool=EXTRACTION)
     return OutlineLayer(
         history=History(outlines=(first,), revision=first_revision),
-        ballot=Ballot(frame=whole.ballot.frame, view=None, unfit=f"shows no {component}"),
+        ballot=_without(whole.ballot, f"shows no {component}"),
     )
 
 
 def _ballot_of_part(
     whole: Ballot, silhouette: Silhouette, settings: ReconstructionSettings
 ) -> Ballot:
+    if silhouette.is_empty:
+        return _without(whole, f"shows no {silhouette.component}")
     if settings.registration == "centroid" and whole.view is None:
-        return Ballot(frame=whole.frame, view=None, unfit=UNPLACED)
+        return _without(whole, UNPLACED)
     return ballot_of(whole.frame, silhouette, replace(settings, registration="none"))
+
+
+def _without(whole: Ballot, unfit: str) -> Ballot:
+    return Ballot(frame=whole.frame, view=None, unfit=unfit)

@@ -1,0 +1,85 @@
+"""The target's parts as requests name them, and as JSON tells of them."""
+
+from collections.abc import Iterable
+from typing import Annotated, Any
+
+import numpy as np
+from fastapi import Query
+
+from app.facts import hull_facts
+from app.layers import component_colours, css
+from app.snapshot import Record, Snapshot
+from core.analysis.hulls import PartHull
+from core.measurement.components import ComponentPlace
+from core.silhouettes.silhouette import WHOLE
+
+LONGEST_LABEL = 40
+"""Characters, that a label still fits beside the picture."""
+
+Component = Annotated[str, Query(description="Label of a part, or the whole target.")]
+
+
+def checked_label(text: str) -> str:
+    """Return a component's label, with single spaces.
+
+    Raises:
+        ValueError: none, one that is too long, or one with letters that cannot be shown.
+    """
+    label = " ".join(text.split())
+    if not 1 <= len(label) <= LONGEST_LABEL or not label.isprintable():
+        raise ValueError(
+            f"A part's label has 1 to {LONGEST_LABEL} printable characters; this one has "
+            f'{len(label)}. Call it "{WHOLE}" if it is the whole.'
+        )
+    return label
+
+
+def component_facts(snapshot: Snapshot) -> list[dict[str, Any]]:
+    """Return of each part that has a hull of its own its colour, its numbers and its place."""
+    colours = component_colours(snapshot.components)
+    return [_part_facts(part, css(colours[part.label])) for part in snapshot.parts]
+
+
+def other_outlines(snapshot: Snapshot, record: Record, component: str) -> list[dict[str, Any]]:
+    """Return the outlines of a frame that are not the component's, with their colours."""
+    layers = record.analysed.layers
+    colours = _colours(snapshot, (component, *record.analysed.parts))
+    return [
+        {
+            "component": label,
+            "colour": colours[label],
+            "rings": [ring.tolist() for ring in layers[label].silhouette.rings],
+        }
+        for label in (WHOLE, *record.analysed.parts)
+        if label != component and not layers[label].silhouette.is_empty
+    ]
+
+
+def colour_of(snapshot: Snapshot, component: str) -> str:
+    """Return a component's colour, also where it has no hull yet."""
+    return _colours(snapshot, (component,))[component]
+
+
+def _colours(snapshot: Snapshot, labels: Iterable[str]) -> dict[str, str]:
+    colours = component_colours((*snapshot.components, *labels))
+    return {label: css(colour) for label, colour in colours.items()}
+
+
+def _part_facts(part: PartHull, colour: str) -> dict[str, Any]:
+    return {
+        "label": part.label,
+        "colour": colour,
+        "hull": hull_facts(part.hull),
+        "place": None if part.place is None else _place_facts(part.place),
+    }
+
+
+def _place_facts(place: ComponentPlace) -> dict[str, Any]:
+    """Return where a part is in the whole; axes are lines, so that their signs mean nothing."""
+    return {
+        "offset_m": place.offset_m.tolist(),
+        "offset_along_axes_m": place.offset_along_axes_m.tolist(),
+        "turn_deg": float(np.degrees(place.turn_rad)),
+        "axes": place.component.axes.tolist(),
+        "volume_share": place.volume_share,
+    }
