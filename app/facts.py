@@ -84,7 +84,7 @@ def frame_info(record: Record) -> dict[str, Any]:
         "state": analysed.state,
         "edited": analysed.history.is_edited,
         "components": [*([] if analysed.silhouette.is_empty else [WHOLE]), *analysed.parts],
-        "revisions": {label: each.history.revision for label, each in analysed.layers.items()},
+        "revisions": _revisions(record),
         "revision": analysed.history.revision,
         "votes": analysed.votes,
         "held_back": analysed.ballot.view is not None and not analysed.votes,
@@ -151,9 +151,15 @@ def frame_facts(
         "image": {"floor_db": FLOOR_DB, "step_db": STEP_DB},
         "interval": interval_facts(frame, course),
         "state": record.analysed.state,
+        "revisions": _revisions(record),
         "silhouette": _silhouette_facts(record.analysed.layer(component)),
         "hull": hull_facts(record.hull),
     }
+
+
+def _revisions(record: Record) -> dict[str, int]:
+    """Return the revisions of a frame's outlines by component, of those taken back too."""
+    return {label: each.history.revision for label, each in record.analysed.layers.items()}
 
 
 def _silhouette_facts(layer: OutlineLayer) -> dict[str, Any]:

@@ -10,6 +10,8 @@ import { FramePanel } from "./frame-panel.js";
 import { showHull } from "./hull-view.js";
 import { resizablePanes } from "./panes.js";
 import { Loading } from "./loading.js";
+import { Parts } from "./parts.js";
+import { showParts } from "./parts-view.js";
 import { Proposals } from "./proposals.js";
 import { showSaved } from "./saved-view.js";
 import { Review } from "./review.js";
@@ -114,6 +116,14 @@ const carving = new Carving(
     go: showFrame,
   },
 );
+const parts = new Parts(session, {
+  leave: () => {
+    proposals.discard();
+    editor.cancel();
+  },
+  show: showState,
+  complain,
+});
 const transport = new Transport(
   {
     play: part("play"),
@@ -192,6 +202,7 @@ function showState(next) {
   if (before && before.source.key !== state.source.key) forgetSource(before);
   showSource(state);
   showHull(state);
+  showParts(state);
   showBanner();
   loading.update(state);
   exporting.update(state);
@@ -202,7 +213,7 @@ function showState(next) {
   timeline.update(state);
   panel.follow(state);
   proposals.beginWith(state.extraction);
-  toolbar.offerLabels(state.frames_info);
+  parts.update(state);
   space.update(state);
   share.update(state);
   bringFrame();
@@ -216,6 +227,7 @@ function forgetSource(before) {
   complain(isTold ? `${why}: the edits of ${before.source.name} are gone.` : "");
   isAnew = false;
   frameOnShow = "";
+  session.component = "target";
   session.clear();
 }
 
@@ -228,7 +240,7 @@ async function bringFrame() {
     if (state.shown === null) {
       frameOnShow = "";
       panel.clear();
-    } else if (session.isBehind(state.frames_info?.[state.shown - 1]?.revision)) {
+    } else if (session.isBehind(state.frames_info?.[state.shown - 1])) {
       await session.refresh();
     }
   } catch (error) {
@@ -260,6 +272,7 @@ async function fetchFrame(key) {
 
 function showEditing() {
   toolbar?.update();
+  parts?.update();
   rightPane.greyWhile(session.isSaving);
   proposals?.update();
   showBanner();
