@@ -8,8 +8,9 @@ from starlette.requests import HTTPConnection
 from starlette.websockets import WebSocketDisconnect
 
 from app.changes import Changes
-from app.components import Component, checked_label, colour_of, component_facts, other_outlines
+from app.components import Component, checked_label, colours_of, component_facts, other_outlines
 from app.facts import frame_facts, state_facts
+from app.layers import css
 from app.pictures import FLOOR_DB, STEP_DB, ColourName, colour_table, encoded_levels
 from app.relay import first_to_end
 from app.snapshot import Record
@@ -143,7 +144,7 @@ def facts_of(stream: LiveStream, number: int, component: str = WHOLE) -> dict[st
     snapshot, record = stream.snapshot, record_at(stream, number)
     return {
         **frame_facts(record, stream.source.course(), component),
-        "colour": colour_of(snapshot, component),
+        "colour": css(colours_of(snapshot, component)[component]),
         "others": other_outlines(snapshot, record, component),
     }
 

@@ -1,13 +1,12 @@
 """The target's parts as requests name them, and as JSON tells of them."""
 
-from collections.abc import Iterable
 from typing import Annotated, Any
 
 import numpy as np
 from fastapi import Query
 
 from app.facts import hull_facts
-from app.layers import component_colours, css
+from app.layers import Colour, component_colours, css
 from app.snapshot import Record, Snapshot
 from core.analysis.hulls import PartHull
 from core.measurement.components import ComponentPlace
@@ -34,35 +33,33 @@ def checked_label(text: str) -> str:
     return label
 
 
+def colours_of(snapshot: Snapshot, *more: str) -> dict[str, Colour]:
+    """Return the colour of all that has been outlined, and of `more` that may be.
+
+    A component keeps its colour when others come or go.
+    """
+    return component_colours((*snapshot.outlined, *snapshot.components, *more))
+
+
 def component_facts(snapshot: Snapshot) -> list[dict[str, Any]]:
     """Return of each part that has a hull of its own its colour, its numbers and its place."""
-    colours = component_colours(snapshot.components)
+    colours = colours_of(snapshot)
     return [_part_facts(part, css(colours[part.label])) for part in snapshot.parts]
 
 
 def other_outlines(snapshot: Snapshot, record: Record, component: str) -> list[dict[str, Any]]:
     """Return the outlines of a frame that are not the component's, with their colours."""
-    layers = record.analysed.layers
-    colours = _colours(snapshot, (component, *record.analysed.parts))
+    layers, parts = record.analysed.layers, record.analysed.parts
+    colours = colours_of(snapshot, *parts)
     return [
         {
             "component": label,
-            "colour": colours[label],
+            "colour": css(colours[label]),
             "rings": [ring.tolist() for ring in layers[label].silhouette.rings],
         }
-        for label in (WHOLE, *record.analysed.parts)
+        for label in (WHOLE, *parts)
         if label != component and not layers[label].silhouette.is_empty
     ]
-
-
-def colour_of(snapshot: Snapshot, component: str) -> str:
-    """Return a component's colour, also where it has no hull yet."""
-    return _colours(snapshot, (component,))[component]
-
-
-def _colours(snapshot: Snapshot, labels: Iterable[str]) -> dict[str, str]:
-    colours = component_colours((*snapshot.components, *labels))
-    return {label: css(colour) for label, colour in colours.items()}
 
 
 def _part_facts(part: PartHull, colour: str) -> dict[str, Any]:

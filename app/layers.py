@@ -131,11 +131,13 @@ def known_layers(names: Iterable[str]) -> frozenset[str]:
 
 
 def component_colours(labels: Iterable[str]) -> dict[str, Colour]:
-    """Return a colour for each component, the whole target first; beyond eight they recur."""
-    parts = sorted({WHOLE, *labels}, key=lambda label: (label != WHOLE, label))
+    """Return a colour for each component, the whole target first; beyond eight they recur.
+
+    A label that comes behind others changes none of their colours.
+    """
     return {
         label: COMPONENT_COLOURS[place % len(COMPONENT_COLOURS)]
-        for place, label in enumerate(parts)
+        for place, label in enumerate(dict.fromkeys((WHOLE, *labels)))
     }
 
 

@@ -72,6 +72,7 @@ class Snapshot:
         hull: what is known of the hull of all of them, None before the first.
         surface: of that hull, None before the first frame.
         parts: hulls of the target's parts that have an outline in some frame, by label.
+        outlined: labels of all that has ever been outlined, in the order in which it first was.
         light: the same with fewer faces for the browser to draw once nothing changes it, None
             until then and where the hull has few enough.
         residuals: of the latest hull that was quiet long enough, None before one.
@@ -89,6 +90,7 @@ class Snapshot:
     hull: Hull | None = None
     surface: Surface | None = None
     parts: tuple[PartHull, ...] = ()
+    outlined: tuple[str, ...] = (WHOLE,)
     light: Simplified | None = None
     residuals: HullResiduals | None = None
     chosen: int | None = None

@@ -334,6 +334,7 @@ class LiveStream:
                 hull=hull if self._records else None,
                 surface=surface if self._records else None,
                 parts=self._analysis.parts,
+                outlined=self._analysis.components,
                 light=before.light if surface is before.surface else None,
                 latency_ms=before.latency_ms if latency_ms is None else latency_ms,
             )

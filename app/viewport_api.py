@@ -9,11 +9,11 @@ from starlette.requests import HTTPConnection
 
 from app.api import Stream
 from app.camera import VIEWS, Camera
+from app.components import colours_of
 from app.layers import (
     FIRST_LAYERS,
     LAYERS,
     Layer,
-    component_colours,
     css,
     known_layers,
 )
@@ -64,13 +64,14 @@ class ViewOrder(BaseModel):
 @router.get("")
 def read_choices(stream: Stream, pages: Pages) -> dict[str, Any]:
     """Return the layers, the named views, and the colours of the hull's components."""
-    colours = component_colours(stream.snapshot.components)
+    snapshot = stream.snapshot
+    colours = colours_of(snapshot)
     offered = [layer for layer in LAYERS if layer.name != "reference" or pages.has_reference]
     return {
         "layers": [_layer_facts(layer) for layer in offered],
         "views": [{"name": view.name, "hint": view.hint} for view in VIEWS.values()],
         "components": [
-            {"label": label, "colour": css(colour)} for label, colour in colours.items()
+            {"label": label, "colour": css(colours[label])} for label in snapshot.components
         ],
     }
 

@@ -2,7 +2,7 @@
 
 import viser
 
-from app.layers import component_colours
+from app.components import colours_of
 from app.snapshot import Snapshot
 from app.surface_node import SurfaceNode
 
@@ -18,7 +18,7 @@ class PartNodes:
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a snapshot's parts and no others; call within one `server.atomic()`."""
-        colours = component_colours(snapshot.components)
+        colours = colours_of(snapshot)
         for label in self._nodes.keys() - set(snapshot.components):
             self._nodes[label].show(None)
         for part in snapshot.parts:

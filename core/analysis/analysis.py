@@ -55,6 +55,7 @@ class Analysis:
         self._frames: list[AnalysedFrame] = []
         self._earlier: list[AnalysedFrame] = []
         self._journal: list[Edit] = []
+        self._components = {WHOLE: True}
         self._extractions: list[Extraction] = []
         self._first_revision = revision
 
@@ -77,6 +78,11 @@ class Analysis:
     def journal(self) -> tuple[Edit, ...]:
         """Every edit, oldest first; nothing is ever taken out."""
         return tuple(self._journal)
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """All that has ever been outlined, in the order in which it first was."""
+        return tuple(self._components)
 
     @property
     def volume(self) -> VoteVolume:
@@ -336,6 +342,7 @@ class Analysis:
         for (number, component), history in histories.items():
             after[number] = after[number].outlined({component: history}, self._settings)
         self._adopt([after.get(frame.number, frame) for frame in self._frames])
+        self._components |= dict.fromkeys((component for _, component in histories), True)
         self._journal += [
             Edit(
                 frame=number,

@@ -53,6 +53,8 @@ export class FramePanel {
   /** Show these layers and no other; names that are none are passed over. */
   setLayers(names) {
     this.#layers = new Set(names.filter((name) => LAYERS.includes(name)));
+    part("part-hint").hidden = !frame || this.session.component === "target" || this.session.rings.length > 0;
+    part("part-hint").textContent = `Draw the ${this.session.component} in this frame; frames without it don’t count.`;
     this.bringOverlays();
     this.#onChange();
   }
@@ -182,6 +184,8 @@ export class FramePanel {
     showNote(part("frame-note"), frame ? noteOf(frame) : "");
     if (frame) showRows(part("frame-facts"), frameRows(frame));
     else part("frame-facts").replaceChildren();
+    part("part-hint").hidden = !frame || this.session.component === "target" || this.session.rings.length > 0;
+    part("part-hint").textContent = `Draw the ${this.session.component} in this frame; frames without it don’t count.`;
     this.bringOverlays();
     this.#onChange();
   }
@@ -189,9 +193,7 @@ export class FramePanel {
 
 function noteOf({ note, silhouette }) {
   const { component, rings } = silhouette;
-  if (component !== "target" && rings.length === 0) {
-    return `draw the ${component} in this frame; frames without it don’t count`;
-  }
+  if (component !== "target" && rings.length === 0) return "";
   return note || (silhouette.repair ?? "").replace(/\.$/, "");
 }
 

@@ -166,9 +166,10 @@ export class Overlay {
 
 /** What the outline claims to show, and of which part, in the plot's lower left corner. */
 function drawClaim(context, plot, { claim, component, colour, rings }) {
+  if (rings.length === 0 && component !== "target") return;
   const shown = claim === "complete" ? "complete outline" : "lit side";
   const named = component === "target" ? shown : `${component}, ${shown}`;
-  const text = rings.length === 0 ? `no ${component}` : named;
+  const text = rings.length === 0 ? "no target" : named;
   context.font = FONT;
   context.textAlign = "left";
   context.textBaseline = "middle";

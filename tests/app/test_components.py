@@ -170,9 +170,15 @@ def test_a_name_that_nobody_can_read_is_refused(page, label) -> None:
     assert "label has 1 to 40 printable characters" in answer.json()["detail"]
 
 
-def test_the_legend_names_the_parts(page) -> None:
-    draw(page, 1, "panel")
-    assert page.get("/api/viewport").json()["components"] == [
-        {"label": "target", "colour": "#a8b8cc"},
-        {"label": "panel", "colour": "#e69f00"},
-    ]
+def test_a_part_keeps_its_colour_whatever_comes_or_goes(page) -> None:
+    draw(page, 1, "knife")
+    draw(page, 1, "a new one")
+    shown = page.get("/api/viewport").json()["components"]
+    assert [each["label"] for each in shown] == ["target", "a new one", "knife"]
+    assert shown[0]["colour"] == "#a8b8cc"
+    colours = {each["label"]: each["colour"] for each in shown}
+    page.delete("/api/components", params={"component": "knife"})
+    (part,) = state(page)["components"]
+    assert part["colour"] == colours["a new one"]
+    step(page, 1, "knife")
+    assert facts(page, 1, "knife")["colour"] == colours["knife"]

@@ -8,7 +8,11 @@ from app.layers import COMPONENT_COLOURS, component_colours, css, known_layers
 def test_the_whole_target_keeps_its_colour_and_each_component_has_its_own() -> None:
     assert component_colours([]) == {"target": COMPONENT_COLOURS[0]}
     colours = component_colours(["panel", "boom", "target", "panel"])
-    assert list(colours) == ["target", "boom", "panel"]
+    assert list(colours) == ["target", "panel", "boom"]
+    assert component_colours(["panel", "boom", "antenna"]) == {
+        **colours,
+        "antenna": COMPONENT_COLOURS[3],
+    }
     assert colours["target"] == COMPONENT_COLOURS[0]
     assert len(set(colours.values())) == 3
 

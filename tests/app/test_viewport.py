@@ -31,6 +31,7 @@ def snapshot_of(analysis: Analysis) -> Snapshot:
         hull=analysis.hull,
         surface=analysis.surface,
         parts=analysis.parts,
+        outlined=analysis.components,
     )
 
 
@@ -109,14 +110,14 @@ def test_parts_show_in_their_colours_within_a_hull_that_lets_them_through(viewpo
     nodes = viewport._parts._nodes
     assert viewport._hull.mesh.color == COMPONENT_COLOURS[0]
     assert viewport._hull.mesh.opacity < 1
-    assert nodes["boom"].mesh.color == COMPONENT_COLOURS[1]
-    assert nodes["panel"].mesh.color == COMPONENT_COLOURS[2]
-    assert len(nodes["panel"].mesh.vertices) == len(analysis.parts[1].surface.vertices_m)
-    analysis.delete_part("boom")
-    viewport.show(snapshot_of(analysis))
-    assert not nodes["boom"].mesh.visible
     assert nodes["panel"].mesh.color == COMPONENT_COLOURS[1]
+    assert nodes["boom"].mesh.color == COMPONENT_COLOURS[2]
+    assert len(nodes["panel"].mesh.vertices) == len(analysis.parts[1].surface.vertices_m)
     analysis.delete_part("panel")
+    viewport.show(snapshot_of(analysis))
+    assert not nodes["panel"].mesh.visible
+    assert nodes["boom"].mesh.color == COMPONENT_COLOURS[2]
+    analysis.delete_part("boom")
     viewport.show(snapshot_of(analysis))
     assert viewport._hull.mesh.opacity is None
 

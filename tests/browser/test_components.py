@@ -4,7 +4,7 @@ import re
 
 from playwright.sync_api import Page, expect
 
-from tests.browser.outlines import go_to, near, origin, place, press_at
+from tests.browser.outlines import go_to, near, origin, place, press_at, wait_until
 
 SQUARE = [(70, 70), (70, 90), (90, 90), (90, 70)]
 
@@ -44,12 +44,12 @@ def test_a_part_drawn_in_three_frames_gets_a_hull_and_numbers_of_its_own(editing
     expect(page.locator("#new-part")).to_be_hidden()
     expect(page.locator("#component")).to_have_value("knife")
     hint = "Draw the knife in this frame; frames without it don’t count."
-    expect(page.locator("#frame-note")).to_have_text(hint)
+    expect(page.locator("#part-hint")).to_have_text(hint)
     for number in (1, 2, 3):
         go_to(page, number)
         expect(page.locator("#component")).to_have_value("knife")
         draw_square(page)
-        expect(page.locator("#frame-note")).to_be_hidden()
+        expect(page.locator("#part-hint")).to_be_hidden()
     part = page.locator("[data-part=knife]")
     expect(part.locator("h3")).to_contain_text(re.compile(r"knife3 views, rev \d+"))
     (knife,) = state(page)["components"]
@@ -61,17 +61,17 @@ def test_a_part_drawn_in_three_frames_gets_a_hull_and_numbers_of_its_own(editing
     page.keyboard.press("v")
     press_at(page, SQUARE[0], (60, 60))
     expect(part).not_to_have_attribute("data-revision", str(knife["hull"]["revision"]))
-    assert near(rings_of_part(page, 3, "knife"), 60, 60)
+    wait_until(page, lambda: near(rings_of_part(page, 3, "knife"), 60, 60))
+    expect(page.locator("#frame-canvas")).to_have_attribute("data-saving", "false")
     page.keyboard.press("Control+z")
-    expect(page.locator("#undo")).to_be_enabled()
-    page.wait_for_function("document.querySelector('#frame-canvas').dataset.revision === '3'")
-    assert near(rings_of_part(page, 3, "knife"), *SQUARE[0])
+    wait_until(page, lambda: near(rings_of_part(page, 3, "knife"), *SQUARE[0]))
     assert state(page)["hull"] == before
 
 
 def test_layers_are_switched_and_a_part_is_deleted_after_a_question(editing) -> None:
     page = editing(2)
     begin_part(page, "solar panel")
+    expect(page.locator("#new-part")).to_be_hidden()
     expect(page.locator("#component")).to_have_value("solar panel")
     draw_square(page)
     expect(page.locator("#component option:checked")).to_have_text("solar panel (1 frame)")
@@ -90,6 +90,6 @@ def test_layers_are_switched_and_a_part_is_deleted_after_a_question(editing) -> 
     page.locator("#delete-part").click()
     page.get_by_role("button", name="Delete", exact=True).click()
     expect(page.locator("[data-part]")).to_have_count(0)
-    expect(page.locator("#frame-note")).to_contain_text("Draw the solar panel in this frame")
+    expect(page.locator("#part-hint")).to_contain_text("Draw the solar panel in this frame")
     page.keyboard.press("Control+z")
     expect(page.locator("[data-part]")).to_have_count(1)
