@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from app.components import component_facts
 from app.facts import carving_facts, hull_facts
 from app.snapshot import Snapshot
 from app.source import Source
@@ -15,6 +16,7 @@ from core.formats.coco import coco_json
 from core.formats.labelme import labelme_zip
 from core.formats.masks import masks_zip
 from core.formats.surfaces import SUFFIXES, surface_bytes
+from core.silhouettes.silhouette import WHOLE
 
 Writer = Callable[[Snapshot, Source], bytes]
 
@@ -66,18 +68,28 @@ def measurement_facts(snapshot: Snapshot, source: Source) -> dict[str, Any]:
         "source": source.name,
         "carving": carving_facts(snapshot.settings),
         "hull": hull_facts(snapshot.hull),
+        "components": component_facts(snapshot),
     }
 
 
 def measurements_csv(snapshot: Snapshot, source: Source) -> bytes:
-    """Return a row per extent, line and volume, each with the hull that it belongs to.
+    """Return a row per extent, line and volume of each component, with the hull it belongs to.
 
     What the views do not bound has no value; directions are unit vectors in the target frame.
     """
     facts = measurement_facts(snapshot, source)
-    hull = facts["hull"]
-    stamp = [hull["revision"], hull["threshold"], hull["views"], facts["carving"]["rule"]]
-    rows = [
+    hulls = {WHOLE: facts["hull"], **{each["label"]: each["hull"] for each in facts["components"]}}
+    text = io.StringIO()
+    writer = csv.writer(text)
+    writer.writerow(_COLUMNS)
+    for component, hull in hulls.items():
+        stamp = [hull["revision"], hull["threshold"], hull["views"], facts["carving"]["rule"]]
+        writer.writerows([*row, *stamp, component] for row in _rows(hull))
+    return text.getvalue().encode()
+
+
+def _rows(hull: dict[str, Any]) -> list[list[Any]]:
+    return [
         *(
             ["extent", each["name"], each["value_m"], "m", each["is_bounded"], *each["direction"]]
             for each in hull["extents"]
@@ -88,16 +100,11 @@ def measurements_csv(snapshot: Snapshot, source: Source) -> bytes:
         ),
         ["volume", "volume", hull["volume_m3"], "m3", hull["volume_m3"] is not None, "", "", ""],
     ]
-    text = io.StringIO()
-    writer = csv.writer(text)
-    writer.writerow(_COLUMNS)
-    writer.writerows([*row, *stamp] for row in rows)
-    return text.getvalue().encode()
 
 
 _COLUMNS = (
     *("kind", "name", "value", "unit", "is_bounded", "direction_x", "direction_y", "direction_z"),
-    *("hull_revision", "threshold_votes", "views", "rule"),
+    *("hull_revision", "threshold_votes", "views", "rule", "component"),
 )
 
 
@@ -110,7 +117,13 @@ def _outlines_by(write: Callable[[Any], bytes]) -> Writer:
     def write_outlines(snapshot: Snapshot, _: Source) -> bytes:
         if not snapshot.records:
             raise ValueError("There is no outline to export yet; wait for the first frame.")
-        return write([(record.number, record.silhouette) for record in snapshot.records])
+        return write(
+            [
+                (record.number, record.analysed.layer(component).silhouette)
+                for record in snapshot.records
+                for component in (WHOLE, *record.analysed.parts)
+            ]
+        )
 
     return write_outlines
 

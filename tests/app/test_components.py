@@ -1,5 +1,7 @@
 """Parts of the target through the interface: outlines and hulls of their own."""
 
+import csv
+import io
 import time
 from collections.abc import Iterator
 
@@ -147,6 +149,39 @@ def test_proposals_and_reprojection_are_of_the_layer(page) -> None:
     assert 0 < seen["overlap"] <= 1
     grown = {**body, "tool": "smooth", "parameters": {}}
     assert "draw one first" in page.post("/api/frames/3/proposals", json=grown).json()["detail"]
+
+
+@pytest.mark.parametrize("kind", ["coco.json", "labelme.zip", "masks.zip"])
+def test_a_part_comes_back_from_a_file_of_outlines(page, kind) -> None:
+    square = [[69.5, 69.5], [69.5, 90.5], [90.5, 90.5], [90.5, 69.5]]
+    draw(page, 2, rings=[square])
+    exported = page.get(f"/api/export/silhouettes-{kind}").content
+    step(page, 2, "knife")
+    revisions = [info["revision"] for info in state(page)["frames_info"]]
+    taken = page.post(
+        "/api/silhouettes",
+        content=exported,
+        params={"name": kind},
+        headers={"Content-Type": "application/octet-stream"},
+    ).json()
+    assert taken == {"changed": [2], "unchanged": [1, 3, 4]}
+    again = facts(page, 2, "knife")["silhouette"]
+    # A mask says of a square of 21 pixels that its corners are cut.
+    assert again["area_px"] == pytest.approx(441, abs=1)
+    assert again["provenance"] == f"imported from {kind}"
+    assert [info["revision"] for info in state(page)["frames_info"]] == revisions
+
+
+def test_measurements_are_exported_with_their_component_and_its_hull(page) -> None:
+    draw(page, 1)
+    draw(page, 2)
+    (knife,) = state(page)["components"]
+    assert page.get("/api/export/measurements.json").json()["components"] == [knife]
+    rows = list(csv.DictReader(io.StringIO(page.get("/api/export/measurements.csv").text)))
+    volumes = {row["component"]: row for row in rows if row["kind"] == "volume"}
+    assert set(volumes) == {"target", "knife"}
+    assert volumes["knife"]["hull_revision"] == str(knife["hull"]["revision"])
+    assert volumes["target"]["hull_revision"] == str(state(page)["hull"]["revision"])
 
 
 def test_a_part_is_deleted_from_all_frames_and_comes_back_by_undo(page) -> None:
