@@ -17,9 +17,14 @@ export class Latest {
     this.#running ??= this.#work();
   }
 
+  /** Forget what has not been sent. */
+  forget() {
+    this.#wish = null;
+  }
+
   /** Forget what has not been sent, and wait for what has. */
   async stop() {
-    this.#wish = null;
+    this.forget();
     await this.#running;
   }
 

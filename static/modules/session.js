@@ -172,7 +172,7 @@ export class Session {
     const target = this.targetOf(direction);
     if (target !== number) return target === null ? this.#chain : this.#onGo(target);
     return this.#queue(async () => {
-      await this.#preview.stop();
+      this.#preview.forget();
       const body = { component, base_revision: this.#revision(number, component) };
       const frame = await send("POST", `/api/frames/${number}/${direction}`, body);
       this.#trail(component).note(direction, number);
@@ -206,8 +206,8 @@ export class Session {
       this.conflict = { ...this.conflict, ...body };
       return undefined;
     }
-    // A preview that came after what it previews would stand in its place.
-    await this.#preview.stop();
+    // One under way is not waited for: after this the server refuses it as made from an old outline.
+    this.#preview.forget();
     this.#hasPreview = false;
     body.base_revision = this.#revision(number, body.component);
     try {

@@ -10,7 +10,7 @@ from playwright.sync_api import Locator, Page, Route, expect
 from app import idle_work
 from app.source import Source
 from tests.app.synthetic import frames, source
-from tests.browser.test_editing import AXE, serious_violations
+from tests.browser.test_frame_picture import AXE, serious_violations
 
 COURSE = {
     "passes": [
@@ -72,6 +72,7 @@ def test_tabs_fit_and_are_worked_by_keys_and_the_sky_plot_shows_frames(visit) ->
     seen = places(page)
     assert seen[2] == pytest.approx((-2.23, -63.96), abs=0.05)
     assert all(one[0] < other[0] for one, other in pairwise(seen[n] for n in (1, 2, 3, 4)))
+    page.wait_for_load_state("networkidle")  # plots and pictures move the page as they come
     page.locator("#sky .dot[data-frame='2']").click()
     expect(page.locator("#frame-canvas")).to_have_attribute("data-frame", "2")
     expect(page.locator("#frame-facts")).to_contain_text("12.0\u202fs into pass 1")

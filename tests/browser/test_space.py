@@ -61,7 +61,7 @@ def light(image: np.ndarray) -> np.ndarray:
 
 def press(page: Page, *names: str) -> None:
     for name in names:
-        page.locator(f"[data-layer={name}]").click()
+        page.locator(f".space [data-layer={name}]").click()
 
 
 def shown_alone(page: Page) -> dict[str, np.ndarray]:
@@ -121,7 +121,7 @@ def test_layers_and_views_are_the_pages_own_and_a_link_carries_them(
     page.evaluate("() => { navigator.clipboard.writeText = () => Promise.reject(); }")
     page.get_by_role("button", name="Link").click()
     text = page.locator("#link-text")
-    expect(text).to_have_value(re.compile(r"#frame=4&camera=[-\d.,e]+,1&layers=hull$"))
+    expect(text).to_have_value(re.compile(r"#frame=4&camera=[-\d.,e]+,1&layers=hull,frame.shadow$"))
     link = text.input_value()
     page.keyboard.press("Escape")
     page.keyboard.press("ArrowRight")
@@ -131,7 +131,7 @@ def test_layers_and_views_are_the_pages_own_and_a_link_carries_them(
     other = context.new_page()
     other.goto(link)
     expect(other.locator("#frame-canvas")).to_have_attribute("data-frame", "4")
-    expect(other.locator("[data-layer=grid]")).to_have_attribute("aria-pressed", "false")
+    expect(other.locator(".space [data-layer=grid]")).to_have_attribute("aria-pressed", "false")
     until(other, lambda image: share_changed(image, seen) < 0.003)
     assert "#" not in other.url
     other.get_by_role("button", name="Link").click()
@@ -152,7 +152,7 @@ def test_layers_and_views_are_the_pages_own_and_a_link_carries_them(
 def test_a_picture_is_saved_and_the_keyboard_has_a_chip(space, tmp_path: Path) -> None:
     page = space.page
     with page.expect_download() as download:
-        page.get_by_role("button", name="Picture").click()
+        page.get_by_role("button", name="Picture", exact=True).click()
     assert re.fullmatch(
         r"radarhull-synthetic-body-frame5-rev\d+\.png", download.value.suggested_filename
     )
@@ -207,7 +207,7 @@ def test_without_webgl_the_page_says_so_and_the_frames_go_on(browser: Browser, v
     expect(page.locator("#space-empty")).to_contain_text("This browser draws no 3D")
     expect(page.locator("#frame-canvas")).to_have_attribute("data-frame", "3")
     expect(page.locator("#viewport")).to_be_hidden()
-    expect(page.get_by_role("button", name="Picture")).to_be_disabled()
+    expect(page.get_by_role("button", name="Picture", exact=True)).to_be_disabled()
     expect(page.locator("#extents tr")).to_have_count(3)
     assert not any(re.search(r":\d+/viewport/", url) for url in asked)
     page.close()

@@ -202,6 +202,7 @@ def test_imaging_is_stopped_and_goes_on(visit) -> None:
     page.get_by_role("button", name="Stop").click()
     expect(page.locator("#status")).to_have_text(re.compile("Paused at frame [1-5] of 6"))
     expect(page.locator("#stop-imaging")).to_be_hidden()
+    page.wait_for_timeout(700)  # the frame in work is still received
     received = state(page)["frames"]
     page.wait_for_timeout(700)
     assert state(page)["frames"] == received

@@ -1,0 +1,1 @@
+"""Image-sequence energy accumulation (ISEA): points from images, without tracks or silhouettes."""

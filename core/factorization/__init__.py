@@ -1,0 +1,1 @@
+"""Shape and motion from scatterers tracked through range-Doppler images: the paper's rival."""
