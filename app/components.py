@@ -8,7 +8,6 @@ from fastapi import Query
 from app.facts import hull_facts
 from app.layers import Colour, component_colours, css
 from app.snapshot import Record, Snapshot
-from core.analysis.hulls import PartHull
 from core.measurement.components import ComponentPlace
 from core.silhouettes.silhouette import WHOLE
 
@@ -42,9 +41,21 @@ def colours_of(snapshot: Snapshot, *more: str) -> dict[str, Colour]:
 
 
 def component_facts(snapshot: Snapshot) -> list[dict[str, Any]]:
-    """Return of each part that has a hull of its own its colour, its numbers and its place."""
+    """Return of each part that has a hull of its own its colour, its numbers and its place.
+
+    `has_place` tells whether there is a place to be measured, once the hulls have been quiet.
+    """
     colours = colours_of(snapshot)
-    return [_part_facts(part, css(colours[part.label])) for part in snapshot.parts]
+    return [
+        {
+            "label": part.label,
+            "colour": css(colours[part.label]),
+            "hull": hull_facts(part.hull),
+            "has_place": snapshot.hull is not None and part.has_place_in(snapshot.hull),
+            "place": None if (place := snapshot.place_of(part)) is None else _place_facts(place),
+        }
+        for part in snapshot.parts
+    ]
 
 
 def other_outlines(snapshot: Snapshot, record: Record, component: str) -> list[dict[str, Any]]:
@@ -60,15 +71,6 @@ def other_outlines(snapshot: Snapshot, record: Record, component: str) -> list[d
         for label in (WHOLE, *parts)
         if label != component and not layers[label].silhouette.is_empty
     ]
-
-
-def _part_facts(part: PartHull, colour: str) -> dict[str, Any]:
-    return {
-        "label": part.label,
-        "colour": colour,
-        "hull": hull_facts(part.hull),
-        "place": None if part.place is None else _place_facts(part.place),
-    }
 
 
 def _place_facts(place: ComponentPlace) -> dict[str, Any]:

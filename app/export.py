@@ -5,7 +5,7 @@ import io
 import json
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from app.components import component_facts
@@ -34,11 +34,31 @@ class Export:
     write: Writer
 
 
-def file_name(what: str, snapshot: Snapshot, source: Source) -> str:
+def file_name(what: str, snapshot: Snapshot, source: Source, component: str = WHOLE) -> str:
     """Return what to call an export: source, hull's revision, kind; letters that any disk takes."""
-    plain = re.sub(r"[^A-Za-z0-9]+", "-", re.sub(r"\.h5$", "", source.name)).strip("-").lower()
     revision = 0 if snapshot.hull is None else snapshot.hull.revision
-    return f"{plain[:40].rstrip('-') or 'pass'}-rev{revision}-{what}"
+    part = "" if component == WHOLE else f"{_plain(component) or 'part'}-"
+    name = _plain(re.sub(r"\.h5$", "", source.name))
+    return f"{name or 'pass'}-rev{revision}-{part}{what}"
+
+
+def _plain(text: str) -> str:
+    plain = re.sub(r"[^A-Za-z0-9]+", "-", text).strip("-").lower()
+    return plain[:40].rstrip("-")
+
+
+def of_component(snapshot: Snapshot, component: str) -> Snapshot:
+    """Return a snapshot whose hull is a component's.
+
+    Raises:
+        ValueError: no such component has a hull.
+    """
+    if component == WHOLE:
+        return snapshot
+    carved = snapshot.carved(component)
+    if carved is None:
+        raise ValueError(f'There is no hull of a part called "{component}" to export.')
+    return replace(snapshot, hull=carved[0], surface=carved[1])
 
 
 def hull_as(suffix: str) -> Writer:

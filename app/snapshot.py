@@ -1,6 +1,7 @@
 """What the workstation shows at one moment, as one immutable value."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 from core.analysis.frames import AnalysedFrame
@@ -9,6 +10,7 @@ from core.analysis.hulls import PartHull
 from core.frame import Frame
 from core.hull.simplification import Simplified
 from core.hull.surface import Surface
+from core.measurement.components import ComponentPlace
 from core.measurement.residuals import Residual
 from core.reconstruction import ReconstructionSettings
 from core.silhouettes.silhouette import WHOLE, Silhouette
@@ -58,6 +60,21 @@ class HullResiduals:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PartPlace:
+    """Where a part's hull stands in the whole target's.
+
+    Attributes:
+        revision: of the part's hull.
+        whole_revision: of the whole's; neither may be the present one any more.
+        place: of the one in the other.
+    """
+
+    revision: int
+    whole_revision: int
+    place: ComponentPlace
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Snapshot:
     """All that observers may show, consistent in itself.
 
@@ -76,6 +93,7 @@ class Snapshot:
         light: the same with fewer faces for the browser to draw once nothing changes it, None
             until then and where the hull has few enough.
         residuals: of the latest hull that was quiet long enough, None before one.
+        places: of parts in the whole, by label, found once their hulls had been quiet for a while.
         chosen: number of the frame that the analyst picked, None to follow the latest.
         latency_ms: from the last edit's arrival until its hull could be shown, None before one.
     """
@@ -93,6 +111,7 @@ class Snapshot:
     outlined: tuple[str, ...] = (WHOLE,)
     light: Simplified | None = None
     residuals: HullResiduals | None = None
+    places: Mapping[str, PartPlace] = field(default_factory=dict)
     chosen: int | None = None
     latency_ms: float | None = None
 
@@ -113,6 +132,17 @@ class Snapshot:
     def components(self) -> tuple[str, ...]:
         """Labels of what has a hull of its own, the whole target first."""
         return (WHOLE, *(part.label for part in self.parts))
+
+    def place_of(self, part: PartHull) -> ComponentPlace | None:
+        """Return where a part is in the whole; None where that is not known of these hulls."""
+        found = self.places.get(part.label)
+        if found is None or self.hull is None:
+            return None
+        is_current = (found.revision, found.whole_revision) == (
+            part.hull.revision,
+            self.hull.revision,
+        )
+        return found.place if is_current else None
 
     def carved(self, component: str) -> tuple[Hull, Surface] | None:
         """Return the hull of a component with its surface, None where it has none."""

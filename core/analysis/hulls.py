@@ -8,7 +8,6 @@ from core.analysis.frames import AnalysedFrame
 from core.analysis.hull import Hull
 from core.hull.surface import Surface
 from core.hull.volume import VoteVolume
-from core.measurement.components import ComponentPlace, place_in_whole
 from core.reconstruction import ReconstructionSettings
 from core.silhouettes.silhouette import WHOLE
 
@@ -24,13 +23,17 @@ class PartHull:
         label: of the part.
         hull: its numbers.
         surface: that they belong to.
-        place: in the whole target's hull; None while the views leave either open, and in previews.
     """
 
     label: str
     hull: Hull
     surface: Surface
-    place: ComponentPlace | None
+
+    def has_place_in(self, whole: Hull) -> bool:
+        """Whether its place in the whole is a measurement: both are kept, and bounded by views."""
+        # Principal lines are measured only where every extent is bounded.
+        is_kept = not (self.hull.is_preview or whole.is_preview)
+        return is_kept and bool(self.hull.lines and whole.lines)
 
 
 class Hulls:
@@ -50,7 +53,6 @@ class Hulls:
         self._surface_of = surface_of
         self._revision = revision
         self._carved = {WHOLE: CarvedHull(settings, surface_of, revision=revision)}
-        self._places: dict[str, tuple[Hull, Hull, ComponentPlace | None]] = {}
 
     @property
     def revision(self) -> int:
@@ -73,16 +75,12 @@ class Hulls:
 
     def parts(self) -> tuple[PartHull, ...]:
         """Return the hulls of all parts, by label."""
-        whole, body = self.whole()
-        found = []
-        for label in sorted(self._carved.keys() - {WHOLE}):
-            hull, surface = self._carved[label].now()
-            known = self._places.get(label)
-            if known is None or known[0] is not hull or known[1] is not whole:
-                known = hull, whole, _place(hull, surface, whole, body)
-                self._places[label] = known
-            found.append(PartHull(label=label, hull=hull, surface=surface, place=known[2]))
-        return tuple(found)
+        labels = sorted(self._carved.keys() - {WHOLE})
+        shown = {label: self._carved[label].now() for label in labels}
+        return tuple(
+            PartHull(label=label, hull=hull, surface=surface)
+            for label, (hull, surface) in shown.items()
+        )
 
     def follow(
         self,
@@ -162,14 +160,3 @@ def _check_count(labels: set[str]) -> None:
             f"A target may have at most {MOST_PARTS} parts with hulls of their own; delete one "
             "before you draw another."
         )
-
-
-def _place(
-    hull: Hull, surface: Surface, whole: Hull, whole_surface: Surface
-) -> ComponentPlace | None:
-    """Return where a part is, unless something of that is no measurement."""
-    is_kept = not (hull.is_preview or whole.is_preview)
-    # Principal lines are measured only where every extent is bounded.
-    if not (is_kept and hull.lines and whole.lines):
-        return None
-    return place_in_whole(surface, whole_surface)

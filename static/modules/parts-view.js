@@ -16,14 +16,14 @@ export function showParts({ components = [] }) {
   part("parts").replaceChildren(...components.map(partSection));
 }
 
-function partSection({ label, colour, hull, place }) {
+function partSection({ label, colour, hull, place, has_place: hasPlace }) {
   const section = document.createElement("section");
   section.className = "part-facts";
   section.dataset.part = label;
   section.dataset.revision = hull.revision;
   section.append(heading(label, colour, hull));
   if (hull.is_empty) section.append(hint(emptyText(hull)));
-  else section.append(...numbers(hull, place));
+  else section.append(...numbers(hull, place, hasPlace), ...(hull.is_preview ? [] : [downloads(label)]));
   return section;
 }
 
@@ -38,7 +38,7 @@ function heading(label, colour, hull) {
   return title;
 }
 
-function numbers(hull, place) {
+function numbers(hull, place, hasPlace) {
   const lines = table("extents lines");
   showLines(lines.tBodies[0], hull.lines);
   const extents = table("extents");
@@ -49,8 +49,18 @@ function numbers(hull, place) {
     ["Volume", hull.volume_m3 === null ? "not bounded" : withUnit(hull.volume_m3, 2, "m³")],
     ...(place ? placeRows(place) : []),
   ]);
-  const missing = hint(placelessText(hull));
+  const missing = hint(placelessText(hull, hasPlace));
   return [...(hull.lines.length > 0 ? [lines] : []), extents, rows, ...(place ? [] : [missing])];
+}
+
+function downloads(label) {
+  const line = hint("Hull as ");
+  ["GLB", "PLY", "STL"].forEach((name, index) => {
+    const link = Object.assign(document.createElement("a"), { textContent: name, download: "" });
+    link.href = `/api/export/hull.${name.toLowerCase()}?component=${encodeURIComponent(label)}`;
+    line.append(index === 0 ? "" : ", ", link);
+  });
+  return line;
 }
 
 function placeRows({ offset_m: offset, turn_deg: turn, volume_share: share }) {
@@ -62,8 +72,9 @@ function placeRows({ offset_m: offset, turn_deg: turn, volume_share: share }) {
   ];
 }
 
-function placelessText({ is_preview: isPreview }) {
+function placelessText({ is_preview: isPreview }, hasPlace) {
   if (isPreview) return "Its place in the whole is told once the outline is kept.";
+  if (hasPlace) return "Its place in the whole comes once nothing has changed for three seconds.";
   return "Its place in the whole is told once the views bound every extent of both.";
 }
 

@@ -144,24 +144,19 @@ def test_excluded_frames_range_and_carving_hold_for_parts_too():
     assert_same_hull(of, from_scratch(of))
 
 
-def test_a_part_has_a_place_once_all_views_together_bound_it_and_the_whole():
+def test_a_part_has_a_place_only_where_views_bound_it_and_the_whole_and_both_are_kept():
     of = analysis(count=5)
     for number in range(1, 6):
         whole = replace(OUTLINES[number - 1], claim="complete")
         commit(of, number, whole)
         commit(of, number, shrunk(whole, "knife"))
-    knife = of.parts[0]
-    np.testing.assert_allclose(
-        knife.place.offset_m, knife.place.component.centroid_m - knife.place.whole.centroid_m
-    )
-    assert knife.place.volume_share == pytest.approx(knife.hull.volume_m3 / of.hull.volume_m3)
-    assert of.parts[0].place is knife.place
+    assert of.parts[0].has_place_in(of.hull)
     of.preview(1, shrunk(OUTLINES[0], "knife"), base_revision=1)
-    assert of.parts[0].place is None
+    assert not of.parts[0].has_place_in(of.hull)
     for number in (2, 3, 4, 5):
         of.set_state(number, "excluded")
     assert of.parts[0].hull.voting == 1
-    assert of.parts[0].place is None
+    assert not of.parts[0].has_place_in(of.hull)
 
 
 def test_an_outline_that_cannot_vote_and_a_part_too_many_change_nothing():

@@ -93,15 +93,18 @@ def test_a_part_gets_its_own_hull_and_leaves_the_whole_as_it_was(page) -> None:
     assert (other["component"], other["colour"]) == ("target", "#a8b8cc")
 
 
-def test_a_place_is_told_once_both_hulls_are_bounded(page) -> None:
+def test_a_place_is_told_once_the_hulls_are_quiet(page, wait_for) -> None:
     for number in (1, 2, 3):
         draw(page, number)
     (knife,) = state(page)["components"]
-    is_bounded = bool(state(page)["hull"]["lines"])
-    assert (knife["place"] is not None) == is_bounded
-    if knife["place"]:
-        assert len(knife["place"]["offset_m"]) == 3
-        assert 0 < knife["place"]["volume_share"] < 1
+    assert knife["has_place"]
+    assert knife["place"] is None
+    (knife,) = wait_for(lambda: [c for c in state(page)["components"] if c["place"]])
+    assert len(knife["place"]["offset_m"]) == 3
+    assert 0 < knife["place"]["volume_share"] < 1
+    draw(page, 3, rings=[])
+    (other,) = state(page)["components"]
+    assert other["place"] is None
 
 
 def test_undo_redo_and_stale_edits_are_of_one_layer(page) -> None:
@@ -170,6 +173,18 @@ def test_a_part_comes_back_from_a_file_of_outlines(page, kind) -> None:
     assert again["area_px"] == pytest.approx(441, abs=1)
     assert again["provenance"] == f"imported from {kind}"
     assert [info["revision"] for info in state(page)["frames_info"]] == revisions
+
+
+def test_a_part_s_hull_is_exported_under_its_name_and_revision(page) -> None:
+    draw(page, 1, "solar panel")
+    draw(page, 2, "solar panel")
+    hull = state(page)["components"][0]["hull"]
+    answer = page.get("/api/export/hull.stl", params={"component": "solar panel"})
+    name = f"synthetic-body-rev{hull['revision']}-solar-panel-hull.stl"
+    assert f'filename="{name}"' in answer.headers["Content-Disposition"]
+    assert len(answer.content) == 84 + 50 * hull["faces"]
+    refused = page.get("/api/export/hull.stl", params={"component": "boom"})
+    assert (refused.status_code, "boom" in refused.json()["detail"]) == (409, True)
 
 
 def test_measurements_are_exported_with_their_component_and_its_hull(page) -> None:
