@@ -53,8 +53,6 @@ export class FramePanel {
   /** Show these layers and no other; names that are none are passed over. */
   setLayers(names) {
     this.#layers = new Set(names.filter((name) => LAYERS.includes(name)));
-    part("part-hint").hidden = !frame || this.session.component === "target" || this.session.rings.length > 0;
-    part("part-hint").textContent = `Draw the ${this.session.component} in this frame; frames without it don’t count.`;
     this.bringOverlays();
     this.#onChange();
   }
@@ -184,11 +182,16 @@ export class FramePanel {
     showNote(part("frame-note"), frame ? noteOf(frame) : "");
     if (frame) showRows(part("frame-facts"), frameRows(frame));
     else part("frame-facts").replaceChildren();
-    part("part-hint").hidden = !frame || this.session.component === "target" || this.session.rings.length > 0;
-    part("part-hint").textContent = `Draw the ${this.session.component} in this frame; frames without it don’t count.`;
+    showHint(this.session);
     this.bringOverlays();
     this.#onChange();
   }
+}
+
+/** Begin a part that this frame has no outline of yet. */
+function showHint({ frame, component, rings }) {
+  part("part-hint").hidden = frame === null || component === "target" || rings.length > 0;
+  part("part-hint").textContent = `Draw the ${component} in this frame; frames without it don’t count.`;
 }
 
 function noteOf({ note, silhouette }) {
