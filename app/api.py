@@ -8,11 +8,14 @@ from starlette.requests import HTTPConnection
 from starlette.websockets import WebSocketDisconnect
 
 from app.changes import Changes
+from app.components import Component, checked_label, colours_of, component_facts, other_outlines
 from app.facts import frame_facts, state_facts
+from app.layers import css
 from app.pictures import FLOOR_DB, STEP_DB, ColourName, colour_table, encoded_levels
 from app.relay import first_to_end
 from app.snapshot import Record
 from app.stream import LiveStream
+from core.silhouettes.silhouette import WHOLE
 
 router = APIRouter(prefix="/api")
 
@@ -58,9 +61,15 @@ def read_colours(name: ColourName = "magma") -> list[list[int]]:
 
 
 @router.get("/frames/{number}")
-def read_frame(number: int, stream: Stream) -> dict[str, Any]:
-    """Return a frame's circumstances, its silhouette, and the hull after it."""
-    return facts_of(stream, number)
+def read_frame(number: int, stream: Stream, component: Component = WHOLE) -> dict[str, Any]:
+    """Return a frame's circumstances, a component's silhouette, and the hull after it.
+
+    The silhouette of a part that nobody has drawn yet is empty.
+    """
+    try:
+        return facts_of(stream, number, checked_label(component))
+    except ValueError as error:
+        raise HTTPException(422, str(error)) from error
 
 
 @router.get("/frames/{number}/image")
@@ -126,13 +135,19 @@ async def _until_hung_up(page: WebSocket) -> None:
 
 def state_of(stream: LiveStream) -> dict[str, Any]:
     """Return what the workstation shows now."""
-    facts = state_facts(stream.snapshot, stream.source)
+    snapshot = stream.snapshot
+    facts = {**state_facts(snapshot, stream.source), "components": component_facts(snapshot)}
     return facts | {name: tell() for name, tell in stream.also_told.items()}
 
 
-def facts_of(stream: LiveStream, number: int) -> dict[str, Any]:
-    """Return what is known of frame `number`, or answer that there is none."""
-    return frame_facts(record_at(stream, number), stream.source.course())
+def facts_of(stream: LiveStream, number: int, component: str = WHOLE) -> dict[str, Any]:
+    """Return what is known of frame `number` and a component in it, or answer that it is none."""
+    snapshot, record = stream.snapshot, record_at(stream, number)
+    return {
+        **frame_facts(record, stream.source.course(), component),
+        "colour": css(colours_of(snapshot, component)[component]),
+        "others": other_outlines(snapshot, record, component),
+    }
 
 
 def record_at(stream: LiveStream, number: int) -> Record:

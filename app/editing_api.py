@@ -9,6 +9,7 @@ from fastapi import APIRouter, HTTPException
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.api import Stream, facts_of, record_at, state_of
+from app.components import Component, checked_label
 from app.proposals import TOOLS, Question, proposal, reprojected_rings
 from core.analysis.analysis import Analysis
 from core.analysis.frames import ReviewState
@@ -16,17 +17,14 @@ from core.analysis.history import NothingLeft, StaleRevision
 from core.hull.drawing import MOST_RINGS, MOST_VERTICES, drawn_silhouette
 from core.hull.shadow import CarvingRule, shadow_region
 from core.silhouettes.editing.disagreement import disagreement
-from core.silhouettes.silhouette import Claim, Silhouette
+from core.silhouettes.silhouette import WHOLE, Claim, Silhouette
 
 router = APIRouter(prefix="/api")
 
 Ring = Annotated[list[tuple[float, float]], Field(max_length=MOST_VERTICES)]
 Rings = Annotated[list[Ring], Field(max_length=MOST_RINGS)]
 
-LONGEST_LABEL = 40
-"""Characters, that a label still fits beside the picture."""
-
-NOT_DRAWING = ("claim", "label")
+NOT_DRAWING = ("claim",)
 """Tools that leave the rings as they are, and so what is said of how these came to be."""
 
 MOST_SIDE_M = 1000.0
@@ -45,7 +43,7 @@ class OutlineOrder(Body):
 
     rings: Rings = Field(description="Each a list of (row, column); none: shows no target.")
     claim: Claim
-    component: str = Field(default="target", description="Label of what it outlines.")
+    component: str = Field(default=WHOLE, description="Label of what it outlines.")
     tool: str = Field(default="drawing", min_length=1, max_length=40)
     base_revision: int = Field(description="Of the outline that this one was made from.")
 
@@ -53,6 +51,7 @@ class OutlineOrder(Body):
 class StepOrder(Body):
     """Undo or redo."""
 
+    component: str = Field(default=WHOLE, description="Label of whose outline.")
     base_revision: int
 
 
@@ -66,6 +65,7 @@ class ProposalOrder(Body):
     """What a tool shall propose."""
 
     tool: str = Field(max_length=40)
+    component: str = Field(default=WHOLE, description="Label of what shall be outlined.")
     parameters: dict[str, Any] = {}
     rings: Rings | None = Field(default=None, description="The outline as it stands on the page.")
 
@@ -96,7 +96,7 @@ def commit_outline(number: int, order: OutlineOrder, stream: Stream) -> dict[str
                 repair=repair,
             )
         )
-    return facts_of(stream, number)
+    return facts_of(stream, number, silhouette.component)
 
 
 @router.put("/frames/{number}/preview")
@@ -105,37 +105,36 @@ def preview_outline(number: int, order: OutlineOrder, stream: Stream) -> dict[st
     with refusing():
         silhouette, _ = _drawn(number, order, stream)
         stream.preview(number, silhouette, base_revision=order.base_revision)
-    return facts_of(stream, number)
+    return facts_of(stream, number, silhouette.component)
 
 
 @router.delete("/frames/{number}/preview")
-def end_preview(number: int, stream: Stream) -> dict[str, Any]:
-    """Show the hull of the committed outlines again."""
+def end_preview(number: int, stream: Stream, component: Component = WHOLE) -> dict[str, Any]:
+    """Show the hulls of the committed outlines again."""
     record_at(stream, number)
     stream.end_preview()
-    return facts_of(stream, number)
+    with refusing():
+        return facts_of(stream, number, checked_label(component))
 
 
 @router.post("/frames/{number}/undo")
 def undo(number: int, order: StepOrder, stream: Stream) -> dict[str, Any]:
-    """Take the frame's last edit back."""
-    return _edited(
-        number, stream, lambda work: work.undo(number, base_revision=order.base_revision)
-    )
+    """Take the last edit of a component's outline in the frame back."""
+    return _stepped(number, order, stream, Analysis.undo)
 
 
 @router.post("/frames/{number}/redo")
 def redo(number: int, order: StepOrder, stream: Stream) -> dict[str, Any]:
-    """Do the frame's edit again that was taken back last."""
-    return _edited(
-        number, stream, lambda work: work.redo(number, base_revision=order.base_revision)
-    )
+    """Do the edit again that was taken back last."""
+    return _stepped(number, order, stream, Analysis.redo)
 
 
 @router.put("/frames/{number}/state")
 def set_state(number: int, order: StateOrder, stream: Stream) -> dict[str, Any]:
     """Say how far the analyst is with a frame; an excluded one does not vote."""
-    _edited(number, stream, lambda work: work.set_state(number, order.state))
+    record_at(stream, number)
+    with refusing():
+        stream.edit(lambda work: work.set_state(number, order.state))
     return state_of(stream)
 
 
@@ -151,26 +150,28 @@ def propose(number: int, order: ProposalOrder, stream: Stream) -> dict[str, Any]
     snapshot = stream.snapshot
     record = record_at(stream, number)
     with refusing():
-        drawn = None if order.rings is None else _silhouette(order.rings, record.silhouette)[0]
-        question = Question(snapshot=snapshot, record=record, drawn=drawn or record.silhouette)
+        kept = record.analysed.layer(checked_label(order.component)).silhouette
+        drawn = None if order.rings is None else _silhouette(order.rings, kept)[0]
+        question = Question(snapshot=snapshot, record=record, drawn=drawn or kept)
         return proposal(order.tool, order.parameters, question).facts()
 
 
 @router.get("/frames/{number}/reprojection")
-def read_reprojection(number: int, stream: Stream) -> dict[str, Any]:
-    """Return the outline of the hull as the frame sees it, and how it differs from the frame's.
+def read_reprojection(number: int, stream: Stream, component: Component = WHOLE) -> dict[str, Any]:
+    """Return the outline of a hull as the frame sees it, and how it differs from the frame's.
 
     What the shadow rule leaves open behind a lit side is no difference.
     """
     snapshot, record = stream.snapshot, record_at(stream, number)
-    drawn = record.silhouette
-    rings = reprojected_rings(snapshot, record)
+    layer, carved = record.analysed.layer(component), snapshot.carved(component)
+    drawn = layer.silhouette
+    rings = reprojected_rings(snapshot, record, component)
     shadow = shadow_region(drawn) if snapshot.settings.rule == "shadow" else ()
     found = disagreement(drawn.rings, rings, shadow)
     return {
         "rings": [ring.tolist() for ring in rings],
-        "revision": None if snapshot.hull is None else snapshot.hull.revision,
-        "outline_revision": record.analysed.history.revision,
+        "revision": None if carved is None else carved[0].revision,
+        "outline_revision": layer.history.revision,
         "only_outline_px": found.only_outline_px,
         "only_hull_px": found.only_reprojection_px,
         "overlap": found.overlap,
@@ -197,29 +198,30 @@ def set_carving(order: CarvingOrder, stream: Stream) -> dict[str, Any]:
     return state_of(stream)
 
 
-def _edited(number: int, stream: Stream, operation: Callable[[Analysis], object]) -> dict[str, Any]:
+@router.delete("/components")
+def delete_component(stream: Stream, component: Component) -> dict[str, Any]:
+    """Take a part's outline out of all frames; each frame's can be brought back by undo."""
+    with refusing():
+        stream.edit(lambda work: work.delete_part(component))
+    return state_of(stream)
+
+
+def _stepped(
+    number: int, order: StepOrder, stream: Stream, step: Callable[..., object]
+) -> dict[str, Any]:
     record_at(stream, number)
     with refusing():
-        stream.edit(operation)
-    return facts_of(stream, number)
+        label, base = checked_label(order.component), order.base_revision
+        stream.edit(lambda work: step(work, number, component=label, base_revision=base))
+        return facts_of(stream, number, label)
 
 
 def _drawn(number: int, order: OutlineOrder, stream: Stream) -> tuple[Silhouette, str]:
-    present = record_at(stream, number).silhouette
-    like = replace(present, claim=order.claim, component=_label(order.component))
+    present = record_at(stream, number).analysed.layer(checked_label(order.component)).silhouette
+    like = replace(present, claim=order.claim)
     if order.tool not in NOT_DRAWING:
         like = replace(like, provenance=f"edited with {order.tool}")
     return _silhouette(order.rings, like)
-
-
-def _label(text: str) -> str:
-    label = " ".join(text.split())
-    if not 1 <= len(label) <= LONGEST_LABEL or not label.isprintable():
-        raise ValueError(
-            f"A part's label has 1 to {LONGEST_LABEL} printable characters; this one has "
-            f'{len(label)}. Call it "target" if it is the whole.'
-        )
-    return label
 
 
 def _silhouette(rings: Rings, like: Silhouette) -> tuple[Silhouette, str]:

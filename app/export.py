@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from app.snapshot import Snapshot
@@ -11,6 +11,7 @@ from core.formats.coco import coco_json
 from core.formats.labelme import labelme_zip
 from core.formats.masks import masks_zip
 from core.formats.surfaces import SUFFIXES, surface_bytes
+from core.silhouettes.silhouette import WHOLE
 
 Writer = Callable[[Snapshot, Source], bytes]
 
@@ -28,11 +29,31 @@ class Export:
     write: Writer
 
 
-def file_name(what: str, snapshot: Snapshot, source: Source) -> str:
+def file_name(what: str, snapshot: Snapshot, source: Source, component: str = WHOLE) -> str:
     """Return what to call an export: source, hull's revision, kind; letters that any disk takes."""
-    plain = re.sub(r"[^A-Za-z0-9]+", "-", re.sub(r"\.h5$", "", source.name)).strip("-").lower()
     revision = 0 if snapshot.hull is None else snapshot.hull.revision
-    return f"{plain[:40].rstrip('-') or 'pass'}-rev{revision}-{what}"
+    part = "" if component == WHOLE else f"{_plain(component) or 'part'}-"
+    name = _plain(re.sub(r"\.h5$", "", source.name))
+    return f"{name or 'pass'}-rev{revision}-{part}{what}"
+
+
+def _plain(text: str) -> str:
+    plain = re.sub(r"[^A-Za-z0-9]+", "-", text).strip("-").lower()
+    return plain[:40].rstrip("-")
+
+
+def of_component(snapshot: Snapshot, component: str) -> Snapshot:
+    """Return a snapshot whose hull is a component's.
+
+    Raises:
+        ValueError: no such component has a hull.
+    """
+    if component == WHOLE:
+        return snapshot
+    carved = snapshot.carved(component)
+    if carved is None:
+        raise ValueError(f'There is no hull of a part called "{component}" to export.')
+    return replace(snapshot, hull=carved[0], surface=carved[1])
 
 
 def hull_as(suffix: str) -> Writer:
@@ -50,7 +71,7 @@ def hull_as(suffix: str) -> Writer:
 
 
 def _check_kept(snapshot: Snapshot) -> None:
-    if snapshot.hull is not None and snapshot.hull.is_preview:
+    if snapshot.is_preview:
         raise ValueError("The hull follows an outline that is not kept yet; keep or discard it.")
 
 
@@ -58,7 +79,13 @@ def _outlines_by(write: Callable[[Any], bytes]) -> Writer:
     def write_outlines(snapshot: Snapshot, _: Source) -> bytes:
         if not snapshot.records:
             raise ValueError("There is no outline to export yet; wait for the first frame.")
-        return write([(record.number, record.silhouette) for record in snapshot.records])
+        return write(
+            [
+                (record.number, record.analysed.layer(component).silhouette)
+                for record in snapshot.records
+                for component in (WHOLE, *record.analysed.parts)
+            ]
+        )
 
     return write_outlines
 

@@ -6,7 +6,9 @@ from fastapi import APIRouter, HTTPException
 from fastapi.responses import StreamingResponse
 
 from app.api import Stream
-from app.export import EXPORTS, file_name
+from app.components import Component
+from app.export import EXPORTS, file_name, of_component
+from core.silhouettes.silhouette import WHOLE
 
 router = APIRouter(prefix="/api/export")
 
@@ -18,17 +20,21 @@ PIECE_BYTES = 256 * 1024
 
 # Not a coroutine: a large hull takes its time, in a thread of its own.
 @router.get("/{what}")
-def export(what: str, stream: Stream) -> StreamingResponse:
-    """Return a file of the hull or the outlines as they stand now."""
+def export(what: str, stream: Stream, component: Component = WHOLE) -> StreamingResponse:
+    """Return a file of the hull or the outlines as they stand now.
+
+    A hull is the component's; outlines are those of all components.
+    """
     if what not in EXPORTS:
         known = ", ".join((*EXPORTS, *MEASUREMENT_FILES))
         raise HTTPException(404, f"There is no export {what}; there are {known}.")
-    snapshot, source = stream.snapshot, stream.source
+    source = stream.source
     try:
+        snapshot = of_component(stream.snapshot, component)
         content = EXPORTS[what].write(snapshot, source)
     except ValueError as error:
         raise HTTPException(409, str(error)) from error
-    name = file_name(what, snapshot, source)
+    name = file_name(what, snapshot, source, component)
     return StreamingResponse(
         _pieces(content),
         media_type=EXPORTS[what].media_type,

@@ -11,6 +11,7 @@ from app.playback import SPEEDS_HZ
 from app.snapshot import Record, Snapshot
 from app.source import Source
 from core.analysis.hull import Hull
+from core.analysis.outline_layers import OutlineLayer
 from core.arrays import Floats
 from core.geometry.track import angles_from_line_of_sight
 from core.hull.simplification import Simplified
@@ -20,6 +21,7 @@ from core.measurement.observability import Grade
 from core.radar.course import PassCourse
 from core.reconstruction import ReconstructionSettings
 from core.silhouettes.extraction import ExtractionSettings
+from core.silhouettes.silhouette import WHOLE
 
 
 def state_facts(snapshot: Snapshot, source: Source) -> dict[str, Any]:
@@ -82,7 +84,8 @@ def frame_info(record: Record) -> dict[str, Any]:
         "number": record.number,
         "state": analysed.state,
         "edited": analysed.history.is_edited,
-        "component": analysed.silhouette.component,
+        "components": [*([] if analysed.silhouette.is_empty else [WHOLE]), *analysed.parts],
+        "revisions": _revisions(record),
         "revision": analysed.history.revision,
         "votes": analysed.votes,
         "held_back": analysed.ballot.view is not None and not analysed.votes,
@@ -123,8 +126,10 @@ def _light_facts(light: Simplified) -> dict[str, Any]:
     return {"faces": len(light.surface.faces), "error_m": light.error_m}
 
 
-def frame_facts(record: Record, course: tuple[PassCourse, ...] = ()) -> dict[str, Any]:
-    """Return a frame's circumstances, its silhouette, and the hull when it had come.
+def frame_facts(
+    record: Record, course: tuple[PassCourse, ...] = (), component: str = WHOLE
+) -> dict[str, Any]:
+    """Return a frame's circumstances, a component's silhouette, and the hull when it had come.
 
     `interval` tells what was imaged, where the `course` of the frame's pass is known.
     `theta_deg` and `phi_deg` are the line of sight's angles in the target frame, not the station's
@@ -135,7 +140,7 @@ def frame_facts(record: Record, course: tuple[PassCourse, ...] = ()) -> dict[str
     return {
         "number": record.number,
         "label": frame.label,
-        "note": record.analysed.note,
+        "note": record.analysed.note_of(component),
         "sensor": frame.sensor,
         "time_s": frame.time_s,
         "shape": frame.shape,
@@ -150,13 +155,19 @@ def frame_facts(record: Record, course: tuple[PassCourse, ...] = ()) -> dict[str
         "image": {"floor_db": FLOOR_DB, "step_db": STEP_DB},
         "interval": interval_facts(frame, course),
         "state": record.analysed.state,
-        "silhouette": _silhouette_facts(record),
+        "revisions": _revisions(record),
+        "silhouette": _silhouette_facts(record.analysed.layer(component)),
         "hull": hull_facts(record.hull),
     }
 
 
-def _silhouette_facts(record: Record) -> dict[str, Any]:
-    silhouette, history = record.silhouette, record.analysed.history
+def _revisions(record: Record) -> dict[str, int]:
+    """Return the revisions of a frame's outlines by component, of those taken back too."""
+    return {label: each.history.revision for label, each in record.analysed.layers.items()}
+
+
+def _silhouette_facts(layer: OutlineLayer) -> dict[str, Any]:
+    silhouette, history = layer.silhouette, layer.history
     return {
         "rings": [ring.tolist() for ring in silhouette.rings],
         "claim": silhouette.claim,
@@ -168,7 +179,7 @@ def _silhouette_facts(record: Record) -> dict[str, Any]:
         "can_undo": history.can_undo,
         "can_redo": history.can_redo,
         "repair": history.present.repair,
-        "vote_repair": record.analysed.vote_repair,
+        "vote_repair": layer.vote_repair,
     }
 
 

@@ -1,4 +1,4 @@
-"""What may wait until nobody changes the hull: residuals, and a lighter surface to draw."""
+"""What may wait until nobody changes a hull: residuals, parts' places, a surface light to draw."""
 
 import logging
 import threading
@@ -7,10 +7,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from app.snapshot import HullResiduals, Snapshot
+from app.snapshot import HullResiduals, PartPlace, Snapshot
+from core.analysis.hulls import PartHull
 from core.hull.casting import Cancelled, Watch
 from core.hull.simplification import simplified
 from core.hull.volume import VoteVolume
+from core.measurement.components import place_in_whole
 from core.measurement.residuals import Outlined, hull_residuals
 
 MOST_IDLE_FACES = 100_000
@@ -64,6 +66,11 @@ class IdleWork:
         self._host = host
         self._is_stopping = False
         self._done: set[str] = set()
+        self._jobs = {
+            "light surface": self._lighten,
+            "places of parts": self._place,
+            "residuals": self._compare,
+        }
         self._seen = host.snapshot
         self._asked = 0
         self._quiet_since_s = time.monotonic()
@@ -103,13 +110,14 @@ class IdleWork:
                 name = self._due(self._seen)
                 left_s = self._quiet_since_s + QUIET_S - time.monotonic()
                 if name is not None and left_s <= 0:
-                    return name, {"light surface": self._lighten, "residuals": self._compare}[name]
+                    return name, self._jobs[name]
                 self._host.changed.wait(None if name is None else left_s)
             return None
 
     def _look(self, shown: Snapshot) -> None:
         """Begin to wait anew where there is another hull or status, or somebody asks for one."""
-        is_other = shown.hull is not self._seen.hull or shown.status != self._seen.status
+        is_other = shown.hull is not self._seen.hull or _parts(shown) != _parts(self._seen)
+        is_other = is_other or shown.status != self._seen.status
         asked = self._host.edits_asked
         if is_other:
             self._done = set()
@@ -120,10 +128,14 @@ class IdleWork:
     def _due(self, shown: Snapshot) -> str | None:
         """Name what is to be done for a hull, None if nothing."""
         hull = shown.hull
-        if hull is None or hull.is_preview or shown.status not in ("paused", "finished"):
+        if hull is None or shown.is_preview or shown.status not in ("paused", "finished"):
             return None
         is_old = shown.residuals is None or shown.residuals.revision != hull.revision
-        due = {"light surface": _is_heavy(shown), "residuals": is_old}
+        due = {
+            "light surface": _is_heavy(shown),
+            "places of parts": bool(_unplaced(shown)),
+            "residuals": is_old,
+        }
         return next(
             (name for name, is_due in due.items() if is_due and name not in self._done), None
         )
@@ -134,6 +146,20 @@ class IdleWork:
         if surface is not None:
             light = simplified(surface, most_faces=MOST_IDLE_FACES)
             self._host.add_found(settled.snapshot, lambda now: replace(now, light=light))
+
+    def _place(self, settled: Settled) -> None:
+        """Tell where the parts are in the whole."""
+        snapshot = settled.snapshot
+        if snapshot.hull is None or snapshot.surface is None:
+            return
+        places = dict(snapshot.places)
+        for part in _unplaced(snapshot):
+            places[part.label] = PartPlace(
+                revision=part.hull.revision,
+                whole_revision=snapshot.hull.revision,
+                place=place_in_whole(part.surface, snapshot.surface),
+            )
+        self._host.add_found(snapshot, lambda now: replace(now, places=places))
 
     def _compare(self, settled: Settled) -> None:
         """Tell of each frame what it causes and what it suffers."""
@@ -150,6 +176,19 @@ class IdleWork:
         """Tell whether what is being done is in somebody's way, or of a hull that is no more."""
         is_asked = self._host.edits_asked != self._asked
         return self._is_stopping or is_asked or self._host.snapshot.hull is not self._seen.hull
+
+
+def _parts(shown: Snapshot) -> list[int]:
+    """Return the revisions of the parts' hulls; no two ever share one."""
+    return [part.hull.revision for part in shown.parts]
+
+
+def _unplaced(shown: Snapshot) -> list[PartHull]:
+    """Return the parts whose place can be measured and is not known yet."""
+    whole = shown.hull
+    if whole is None:
+        return []
+    return [p for p in shown.parts if p.has_place_in(whole) and shown.place_of(p) is None]
 
 
 def _is_heavy(shown: Snapshot) -> bool:

@@ -3,10 +3,9 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-Colour = tuple[int, int, int]
+from core.silhouettes.silhouette import WHOLE
 
-WHOLE = "target"
-"""The component that outlines carry unless the analyst names another."""
+Colour = tuple[int, int, int]
 
 COMPONENT_COLOURS: tuple[Colour, ...] = (
     (168, 184, 204),
@@ -58,7 +57,12 @@ class Layer:
 
 
 LAYERS = (
-    Layer(name="hull", title="Hull", hint="The hull's surface", colour=COMPONENT_COLOURS[0]),
+    Layer(
+        name="hull",
+        title="Hull",
+        hint="The target's hull; translucent while parts have hulls of their own, which show in it",
+        colour=COMPONENT_COLOURS[0],
+    ),
     Layer(
         name="wireframe",
         title="Wireframe",
@@ -134,15 +138,16 @@ def known_layers(names: Iterable[str]) -> frozenset[str]:
 
 
 def component_colours(labels: Iterable[str]) -> dict[str, Colour]:
-    """Return a colour for each component, the whole target first; beyond eight they recur."""
-    parts = sorted({WHOLE, *labels}, key=lambda label: (label != WHOLE, label))
+    """Return a colour for each component, the whole target first; beyond eight they recur.
+
+    A label that comes behind others changes none of their colours.
+    """
     return {
         label: COMPONENT_COLOURS[place % len(COMPONENT_COLOURS)]
-        for place, label in enumerate(parts)
+        for place, label in enumerate(dict.fromkeys((WHOLE, *labels)))
     }
 
 
-def hull_component(labels: Iterable[str]) -> str:
-    """Return the component that a hull of outlines with these labels shows."""
-    distinct = set(labels)
-    return distinct.pop() if len(distinct) == 1 else WHOLE
+def css(colour: Colour) -> str:
+    """Return a colour as style sheets write it."""
+    return "#" + "".join(f"{part:02x}" for part in colour)

@@ -23,7 +23,7 @@ from core.silhouettes.editing.smoothing import simplified, smoothed, without_hol
 from core.silhouettes.editing.snapping import snapped
 from core.silhouettes.editing.transfer import copied, interpolated
 from core.silhouettes.extraction import ExtractionSettings, extract_silhouette
-from core.silhouettes.silhouette import Claim, Silhouette
+from core.silhouettes.silhouette import WHOLE, Claim, Silhouette
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -168,12 +168,15 @@ def proposal(tool: str, parameters: dict[str, Any], question: Question) -> Propo
     return TOOLS[tool].proposal(parameters, question)
 
 
-def reprojected_rings(snapshot: Snapshot, record: Record) -> tuple[Floats, ...]:
-    """Return the outline of the hull on show as a frame sees it, traced between its pixels."""
-    if snapshot.surface is None or snapshot.surface.is_empty:
+def reprojected_rings(
+    snapshot: Snapshot, record: Record, component: str = WHOLE
+) -> tuple[Floats, ...]:
+    """Return the outline of a hull on show as a frame sees it, traced between its pixels."""
+    carved = snapshot.carved(component)
+    if carved is None or carved[1].is_empty:
         return ()
     frame = record.frame
-    return hull_image(snapshot.surface, frame.projection, frame.shape, finer=2)
+    return hull_image(carved[1], frame.projection, frame.shape, finer=2)
 
 
 def _threshold(question: Question, chosen: ThresholdParameters) -> Proposal:
@@ -200,24 +203,21 @@ def _record(question: Question, number: int) -> Record:
 
 def _copy(question: Question, chosen: CopyParameters) -> Proposal:
     """Copy another frame's outline so that the target's origin stays under it."""
-    other = _record(question, chosen.source)
-    if other.silhouette.is_empty:
-        note = f"Frame {chosen.source} shows no target."
-        return Proposal(rings=(), claim=other.silhouette.claim, note=note)
-    rings = copied(other.silhouette.rings, other.frame, question.record.frame)
-    return Proposal(rings=rings, claim=other.silhouette.claim)
+    other, component = _record(question, chosen.source), question.drawn.component
+    silhouette = other.analysed.layer(component).silhouette
+    if silhouette.is_empty:
+        note = f"Frame {chosen.source} shows no {component}."
+        return Proposal(rings=(), claim=silhouette.claim, note=note)
+    rings = copied(silhouette.rings, other.frame, question.record.frame)
+    return Proposal(rings=rings, claim=silhouette.claim)
 
 
 def _interpolate(question: Question, chosen: InterpolateParameters) -> Proposal:
     before, after = (_record(question, number) for number in chosen.ends)
-    rings = interpolated(
-        before.silhouette.rings,
-        before.frame,
-        after.silhouette.rings,
-        after.frame,
-        question.record.frame,
-    )
-    return Proposal(rings=rings, claim=before.silhouette.claim)
+    component = question.drawn.component
+    first, last = (end.analysed.layer(component).silhouette for end in (before, after))
+    rings = interpolated(first.rings, before.frame, last.rings, after.frame, question.record.frame)
+    return Proposal(rings=rings, claim=first.claim)
 
 
 def _grow(question: Question, chosen: GrowParameters) -> Proposal:
@@ -247,7 +247,7 @@ def _redrawn(change: Callable[[Silhouette, Frame, Any], tuple[Floats, ...]]) -> 
 
 
 def _reprojection(question: Question, _: NoParameters) -> Proposal:
-    rings = reprojected_rings(question.snapshot, question.record)
+    rings = reprojected_rings(question.snapshot, question.record, question.drawn.component)
     return Proposal(
         rings=rings,
         claim="complete",

@@ -8,6 +8,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import ClientDisconnect
 
 from app.api import Stream
+from app.components import checked_label
 from app.gate import LARGEST_UPLOADS_BYTES
 from app.source_api import shown_name
 from app.stream import LiveStream
@@ -17,7 +18,7 @@ from core.analysis.history import Outlined
 from core.formats.annotation import Annotation
 from core.formats.annotations import read_annotations
 from core.hull.drawing import drawn_silhouette
-from core.silhouettes.silhouette import Silhouette
+from core.silhouettes.silhouette import WHOLE, Silhouette
 
 router = APIRouter(prefix="/api")
 
@@ -55,23 +56,28 @@ async def import_silhouettes(
 
 def _imported(stream: LiveStream, content: bytes, name: str) -> dict[str, list[int]]:
     annotations = read_annotations(content, name)
-    outlines: dict[int, Outlined] = {}
+    outlines: list[tuple[int, Outlined]] = []
 
     def take_over(analysis: Analysis) -> None:
         for annotation in annotations:
             frame = analysis.frame(annotation.number)
             outlined = _outlined(annotation, frame, name)
-            if not _is_same(outlined.silhouette, frame.silhouette, is_mask=annotation.is_mask):
-                outlines[annotation.number] = outlined
+            present = frame.layer(outlined.silhouette.component).silhouette
+            if not _is_same(outlined.silhouette, present, is_mask=annotation.is_mask):
+                outlines.append((annotation.number, outlined))
         analysis.commit_all(outlines, tool="import")
 
     stream.edit(take_over)
-    unchanged = [each.number for each in annotations if each.number not in outlines]
-    return {"changed": list(outlines), "unchanged": unchanged}
+    changed = dict.fromkeys(number for number, _ in outlines)
+    named = dict.fromkeys(each.number for each in annotations)
+    return {
+        "changed": list(changed),
+        "unchanged": [number for number in named if number not in changed],
+    }
 
 
 def _outlined(annotation: Annotation, frame: AnalysedFrame, name: str) -> Outlined:
-    present = frame.silhouette
+    present = frame.layer(checked_label(annotation.component or WHOLE)).silhouette
     if annotation.image_shape != present.image_shape:
         rows, columns = annotation.image_shape
         raise ValueError(
@@ -83,7 +89,7 @@ def _outlined(annotation: Annotation, frame: AnalysedFrame, name: str) -> Outlin
             annotation.rings,
             image_shape=present.image_shape,
             claim=annotation.claim or present.claim,
-            component=annotation.component or present.component,
+            component=present.component,
             provenance=f"imported from {name}",
         )
     except ValueError as error:

@@ -219,7 +219,7 @@ class LiveStream:
         """Show the hull itself again."""
         self._next_ticket()
         with self._working:
-            if self._snapshot.hull is None or not self._snapshot.hull.is_preview:
+            if not self._snapshot.is_preview:
                 return self._snapshot
             self._analysis.end_preview()
             snapshot = self._show_analysis()
@@ -335,6 +335,8 @@ class LiveStream:
                 records=self._records,
                 hull=hull if self._records else None,
                 surface=surface if self._records else None,
+                parts=self._analysis.parts,
+                outlined=self._analysis.components,
                 light=before.light if surface is before.surface else None,
                 latency_ms=before.latency_ms if latency_ms is None else latency_ms,
             )

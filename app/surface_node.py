@@ -46,9 +46,19 @@ class SurfaceNode:
 
     def colour(self, colour: Colour) -> None:
         """Give it another colour."""
+        if colour == self._colour:
+            return
         self._colour = colour
         if self._mesh is not None:
             self._mesh.color = colour
+
+    def fade(self, opacity: float | None) -> None:
+        """Let what is behind it through, or make it opaque again with None."""
+        if opacity == self._opacity:
+            return
+        self._opacity = opacity
+        if self._mesh is not None:
+            self._mesh.opacity = opacity
 
     def show(self, surface: Surface | None) -> None:
         """Show a surface, or hide it where there is none; call within one `server.atomic()`.

@@ -1,7 +1,6 @@
 """The scene in the viewport: hull, current frame in its imaging plane, line of sight, axes."""
 
 import threading
-from collections.abc import Iterable
 from typing import Literal
 
 import numpy as np
@@ -18,13 +17,12 @@ from app.layers import (
     UNCARVED_COLOUR,
     WIREFRAME_COLOUR,
     Colour,
-    component_colours,
-    hull_component,
 )
 from app.picture_plane import picture_plane
 from app.pictures import SHOWN_FLOOR_DB, translucent_picture
 from app.snapshot import Record, Snapshot
 from app.surface_node import SurfaceNode
+from app.viewport_parts import PartNodes
 from core.analysis.frames import AnalysedFrame
 from core.arrays import Floats
 from core.frame import Frame
@@ -36,6 +34,8 @@ AXIS_NAMES = ("x along-track", "y cross-track", "z nadir")
 
 GRID_CELL_M = 1.0
 GRID_SECTION_M = 5.0
+
+HULL_OPACITY_AROUND_PARTS = 0.45
 
 SIGHT_REACH = (0.58, 0.42)
 """Where the arrow of the line of sight begins and ends, in sides of the window from the centre."""
@@ -62,13 +62,13 @@ class Viewport:
         self._side_m = 0.0
         self._wanted: frozenset[str] = frozenset()
         self._hull_shown: Surface | None = None
-        self._component = ""
         self._frame_shown: AnalysedFrame | None = None
         self._picture_shown: tuple[Frame, slice, slice] | None = None
         self._aspects_shown: tuple[Frame, ...] = ()
         for layer in LAYERS:
             server.scene.add_frame(layer.node, show_axes=False, visible=layer.is_on)
         self._hull = SurfaceNode(server, "/hull/surface")
+        self._parts = PartNodes(server, "/hull/parts")
         self._wireframe = SurfaceNode(
             server, "/wireframe/edges", colour=WIREFRAME_COLOUR, wireframe=True
         )
@@ -97,7 +97,8 @@ class Viewport:
             hull_is_new = snapshot.drawn is not self._hull_shown
             if hull_is_new:
                 self._show_hull(snapshot.drawn)
-            self._colour_hull(record.silhouette.component for record in snapshot.records)
+            self._parts.show(snapshot)
+            self._hull.fade(HULL_OPACITY_AROUND_PARTS if snapshot.parts else None)
             self._show_aspects(snapshot.records, again=is_resized)
             shown = None if snapshot.shown is None else snapshot.shown.analysed
             if shown is not self._frame_shown or is_resized:
@@ -169,14 +170,6 @@ class Viewport:
         self._hull.show(surface)
         if "wireframe" in self._wanted:
             self._wireframe.show(surface)
-
-    def _colour_hull(self, labels: Iterable[str]) -> None:
-        """Give the hull the colour of the component that its outlines show."""
-        shown = set(labels)
-        component = hull_component(shown)
-        if component != self._component:
-            self._component = component
-            self._hull.colour(component_colours(shown)[component])
 
     def _show_frame(self, shown: AnalysedFrame | None) -> None:
         self._frame_shown = shown

@@ -1,6 +1,5 @@
 """The JSON interface to a page's own view in space: its layers and its camera."""
 
-from dataclasses import replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -10,13 +9,12 @@ from starlette.requests import HTTPConnection
 
 from app.api import Stream
 from app.camera import VIEWS, Camera
+from app.components import colours_of
 from app.layers import (
     FIRST_LAYERS,
     LAYERS,
-    Colour,
     Layer,
-    component_colours,
-    hull_component,
+    css,
     known_layers,
 )
 from app.viewport_pages import ViewportPages
@@ -66,18 +64,14 @@ class ViewOrder(BaseModel):
 @router.get("")
 def read_choices(stream: Stream, pages: Pages) -> dict[str, Any]:
     """Return the layers, the named views, and the colours of the hull's components."""
-    labels = {record.silhouette.component for record in stream.snapshot.records}
-    colours = component_colours(labels)
-    whole = colours[hull_component(labels)]
+    snapshot = stream.snapshot
+    colours = colours_of(snapshot)
     offered = [layer for layer in LAYERS if layer.name != "reference" or pages.has_reference]
     return {
-        "layers": [
-            _layer_facts(replace(layer, colour=whole) if layer.name == "hull" else layer)
-            for layer in offered
-        ],
+        "layers": [_layer_facts(layer) for layer in offered],
         "views": [{"name": view.name, "hint": view.hint} for view in VIEWS.values()],
         "components": [
-            {"label": label, "colour": _css(colour)} for label, colour in colours.items()
+            {"label": label, "colour": css(colours[label])} for label in snapshot.components
         ],
     }
 
@@ -141,7 +135,7 @@ def _layer_facts(layer: Layer) -> dict[str, Any]:
         "name": layer.name,
         "title": layer.title,
         "hint": layer.hint,
-        "colour": _css(layer.colour),
+        "colour": css(layer.colour),
         "is_on": layer.name in FIRST_LAYERS,
     }
 
@@ -153,7 +147,3 @@ def _camera_facts(camera: Camera) -> dict[str, Any]:
         "up": camera.up.tolist(),
         "field_of_view_deg": float(np.degrees(camera.field_of_view_rad)),
     }
-
-
-def _css(colour: Colour) -> str:
-    return "#" + "".join(f"{part:02x}" for part in colour)

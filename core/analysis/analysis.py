@@ -1,39 +1,41 @@
 """The mutable heart of the workstation: frames that arrive, outlines that change, one hull."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import get_args
 
+from core.analysis.carved import SurfaceOf
 from core.analysis.extracting import Extraction, extracted_again
 from core.analysis.frames import AnalysedFrame, ReviewState
 from core.analysis.history import EXTRACTION, Edit, History, NothingLeft, Outlined
-from core.analysis.hull import Hull, hull_of
-from core.analysis.polling import bring_in_step
+from core.analysis.hull import Hull
+from core.analysis.hulls import Hulls, PartHull
+from core.analysis.outline_layers import layers_of
 from core.frame import Frame
-from core.geometry.grid import VoxelGrid
-from core.hull.surface import EMPTY_SURFACE, Surface
+from core.hull.surface import Surface
 from core.hull.volume import VoteVolume
-from core.reconstruction import ReconstructionSettings, ballot_of, vote_threshold
+from core.reconstruction import ReconstructionSettings
 from core.silhouettes.extraction import ExtractionSettings, extract_silhouette
-from core.silhouettes.silhouette import Silhouette
+from core.silhouettes.silhouette import WHOLE, Silhouette
 
-PREVIEW_VOXELS = 96
-"""Along each side of the grid that previews are carved on."""
+Key = tuple[int, str]
+"""Number of a frame, and the component that an outline in it shows."""
 
 
 class Analysis:
-    """Frames with their outlines, and the hull that follows every change of them.
+    """Frames with their outlines, and the hulls that follow every change of them.
 
-    After any sequence of operations the hull is, number by number, the one that the same frames
-    with the same outlines give from scratch. An operation that raises has changed nothing. Not
-    safe to share between threads without a lock of the owner's.
+    A silhouette is the outline of the component that it names: of the whole target, or of a part,
+    which has a hull of its own. After any sequence of operations each hull is, number by number,
+    the one that the same frames with the same outlines give from scratch. An operation that raises
+    has changed nothing. Not safe to share between threads without a lock of the owner's.
     """
 
     def __init__(
         self,
         settings: ReconstructionSettings | None = None,
         *,
-        surface_of: Callable[[VoteVolume], Surface] = VoteVolume.surface,
+        surface_of: SurfaceOf = VoteVolume.surface,
         revision: int = 0,
     ) -> None:
         """Start without frames.
@@ -49,21 +51,18 @@ class Analysis:
         """
         self._settings = settings or ReconstructionSettings()
         self._surface_of = surface_of
-        self._volume = VoteVolume(_grid(self._settings))
+        self._hulls = Hulls(self._settings, surface_of, revision=revision)
         self._frames: list[AnalysedFrame] = []
         self._earlier: list[AnalysedFrame] = []
         self._journal: list[Edit] = []
+        self._components = {WHOLE: True}
         self._extractions: list[Extraction] = []
-        self._coarse: VoteVolume | None = None
-        self._is_preview = False
-        self._revision = revision
         self._first_revision = revision
-        self._shown: tuple[Hull, Surface] | None = None
 
     @property
     def revision(self) -> int:
-        """Of the hull; it grows with every change, and no outline's is larger."""
-        return self._revision
+        """It grows with every change; no hull's and no outline's is larger."""
+        return self._hulls.revision
 
     @property
     def settings(self) -> ReconstructionSettings:
@@ -81,19 +80,29 @@ class Analysis:
         return tuple(self._journal)
 
     @property
+    def components(self) -> tuple[str, ...]:
+        """All that has ever been outlined, in the order in which it first was."""
+        return tuple(self._components)
+
+    @property
     def volume(self) -> VoteVolume:
-        """The committed votes; frame n is view n − 1. To be read only."""
-        return self._volume
+        """The whole target's committed votes; frame n is view n − 1. To be read only."""
+        return self._hulls.volume
 
     @property
     def hull(self) -> Hull:
-        """The hull, or its preview, with all its numbers."""
-        return self._now()[0]
+        """The whole target's hull, or its preview, with all its numbers."""
+        return self._hulls.whole()[0]
 
     @property
     def surface(self) -> Surface:
         """The surface that the numbers of `hull` belong to."""
-        return self._now()[1]
+        return self._hulls.whole()[1]
+
+    @property
+    def parts(self) -> tuple[PartHull, ...]:
+        """The hulls of the target's parts that have an outline in some frame, by label."""
+        return self._hulls.parts()
 
     def frame(self, number: int) -> AnalysedFrame:
         """Return frame `number`, from 1.
@@ -123,19 +132,20 @@ class Analysis:
         number = len(self._frames) + 1
         before = self._earlier[number - 1] if number <= len(self._earlier) else None
         if before is not None and before.received.shape == frame.shape:
-            history, state = before.history, before.state
+            histories = {label: layer.history for label, layer in before.layers.items()}
+            state = before.state
         else:
             extracted = silhouette or extract_silhouette(frame, self._settings.extraction)
             first = Outlined(silhouette=extracted, tool=EXTRACTION)
-            history = History(outlines=(first,), revision=self._first_revision)
+            histories = {WHOLE: History(outlines=(first,), revision=self._first_revision)}
             state = "todo"
         received = AnalysedFrame(
             number=number,
             received=frame,
-            history=history,
+            layers=layers_of(frame, histories, self._settings),
             state=state,
-            ballot=ballot_of(frame, history.present.silhouette, self._settings),
             is_in_range=self._settings.lets_vote(number),
+            first_revision=self._first_revision,
         )
         self._adopt([*self._frames, received])
         return received
@@ -143,10 +153,8 @@ class Analysis:
     def rewind(self) -> None:
         """Take all frames out, to be received again; outlines, states and journal are kept."""
         self._earlier[: len(self._frames)] = self._frames
-        self._volume = VoteVolume(self._volume.grid)
-        self._coarse = None
+        self._hulls = Hulls(self._settings, self._surface_of, revision=self.revision + 1)
         self._frames = []
-        self._changed()
 
     def commit(
         self,
@@ -170,38 +178,66 @@ class Analysis:
             StaleRevision: the frame's outline has changed since `base_revision`.
             ValueError: there is no such frame, or an outline that cannot vote.
         """
-        history = self._based(number, base_revision)
+        history = self._based(number, silhouette.component, base_revision)
         outlined = Outlined(silhouette=silhouette, tool=tool, repair=repair)
-        return self._revise({number: history.committed(outlined)}, tool)[0]
+        key = number, silhouette.component
+        return self._revise({key: history.committed(outlined)}, tool)[0]
 
-    def commit_all(self, outlines: Mapping[int, Outlined], *, tool: str) -> None:
-        """Give several frames, by number, outlines that `tool` made: all or none.
+    def commit_all(self, outlines: Iterable[tuple[int, Outlined]], *, tool: str) -> None:
+        """Give frames, by number, outlines that `tool` made: all or none.
 
         Raises:
             ValueError: there is no such frame, or an outline that cannot vote.
         """
-        histories = {n: self.frame(n).history.committed(o) for n, o in outlines.items()}
+        histories = {
+            (number, component): self.frame(number).layer(component).history.committed(outlined)
+            for number, outlined in outlines
+            for component in (outlined.silhouette.component,)
+        }
         self._revise(histories, tool)
 
-    def undo(self, number: int, *, base_revision: int) -> AnalysedFrame:
-        """Take a frame's last edit back; no other frame changes.
+    def delete_part(self, component: str) -> tuple[AnalysedFrame, ...]:
+        """Take a part's outline out of all frames, as edits that can be undone one by one.
+
+        Raises:
+            ValueError: no frame has such a part; the whole target is none.
+        """
+        drawn = [frame for frame in self._frames if component in frame.parts]
+        if not drawn:
+            raise ValueError(f'No frame has an outline of a part called "{component}".')
+        tool = "delete part"
+        empty = {f.number: replace(f.layer(component).silhouette, rings=()) for f in drawn}
+        return self._revise(
+            {
+                (f.number, component): f.layer(component).history.committed(
+                    Outlined(silhouette=empty[f.number], tool=tool)
+                )
+                for f in drawn
+            },
+            tool,
+        )
+
+    def undo(self, number: int, *, base_revision: int, component: str = WHOLE) -> AnalysedFrame:
+        """Take the last edit of a component's outline back; nothing else changes.
 
         Raises:
             StaleRevision: the frame's outline has changed since `base_revision`.
             NothingLeft: there is none.
             ValueError: there is no such frame.
         """
-        return self._revise({number: self._based(number, base_revision).undone()}, "undo")[0]
+        history = self._based(number, component, base_revision).undone()
+        return self._revise({(number, component): history}, "undo")[0]
 
-    def redo(self, number: int, *, base_revision: int) -> AnalysedFrame:
-        """Do again the edit of a frame that was taken back last.
+    def redo(self, number: int, *, base_revision: int, component: str = WHOLE) -> AnalysedFrame:
+        """Do again the edit of a component's outline that was taken back last.
 
         Raises:
             StaleRevision: the frame's outline has changed since `base_revision`.
             NothingLeft: there is none.
             ValueError: there is no such frame.
         """
-        return self._revise({number: self._based(number, base_revision).redone()}, "redo")[0]
+        history = self._based(number, component, base_revision).redone()
+        return self._revise({(number, component): history}, "redo")[0]
 
     def set_state(self, number: int, state: ReviewState) -> AnalysedFrame:
         """Say how far the analyst is with a frame; an excluded one does not vote.
@@ -217,10 +253,7 @@ class Analysis:
             )
         before = self.frame(number)
         after = replace(before, state=state)
-        if after.votes == before.votes and not self._is_preview:
-            self._frames = self._with(after)
-        else:
-            self._adopt(self._with(after))
+        self._adopt(self._with(after))
         return after
 
     def extract_again(
@@ -241,7 +274,8 @@ class Analysis:
             for number, silhouette in found.outlines.items()
         }
         changed = self._revise(
-            {n: self.frame(n).history.committed(o) for n, o in outlined.items()}, EXTRACTION
+            {(n, WHOLE): self.frame(n).history.committed(o) for n, o in outlined.items()},
+            EXTRACTION,
         )
         self._settings = replace(self._settings, extraction=extraction)
         revisions = {frame.number: frame.history.revision for frame in changed}
@@ -258,7 +292,7 @@ class Analysis:
             raise NothingLeft("There is no detection in all frames to take back.")
         last = self._extractions[-1]
         same = [f for f in self._frames if f.history.revision == last.revisions.get(f.number)]
-        changed = self._revise({f.number: f.history.undone() for f in same}, "undo")
+        changed = self._revise({(f.number, WHOLE): f.history.undone() for f in same}, "undo")
         self._settings = replace(self._settings, extraction=last.before)
         self._extractions.pop()
         return changed
@@ -269,20 +303,16 @@ class Analysis:
         Raises:
             ValueError: a grid too large, or one within which a camera stands.
         """
-        frames = [replace(f, is_in_range=settings.lets_vote(f.number)) for f in self._frames]
         if _count_alike(self._settings, settings):
-            self._settings = settings
-            self._adopt(frames)
-            return
-        frames = [replace(f, ballot=ballot_of(f.received, f.silhouette, settings)) for f in frames]
-        volume = VoteVolume(_grid(settings))
-        _carve(volume, frames, settings)
-        self._settings, self._volume, self._frames = settings, volume, frames
-        self._coarse = None
-        self._changed()
+            in_range = [replace(f, is_in_range=settings.lets_vote(f.number)) for f in self._frames]
+            self._adopt(in_range, settings)
+        else:
+            frames = [f.voting_by(settings) for f in self._frames]
+            self._hulls.carve_anew(frames, settings)
+            self._settings, self._frames = settings, frames
 
     def preview(self, number: int, silhouette: Silhouette, *, base_revision: int) -> None:
-        """Show the hull, more coarsely, as it would be with another outline of a frame.
+        """Show a component's hull, more coarsely, as it would be with another outline of a frame.
 
         Nothing is committed: the next operation, or `end_preview`, brings the hull itself back.
 
@@ -290,89 +320,54 @@ class Analysis:
             StaleRevision: the frame's outline has changed since `base_revision`.
             ValueError: there is no such frame, or an outline that cannot vote.
         """
-        self._based(number, base_revision)
-        drafted = self._with_outline(self.frame(number), silhouette)
-        if self._coarse is None:
-            self._coarse = VoteVolume(_coarse_grid(self._settings))
-        _carve(self._coarse, self._with(drafted), self._settings)
-        self._changed(is_preview=True)
+        component = silhouette.component
+        history = self._based(number, component, base_revision)
+        drafted = history.committed(Outlined(silhouette=silhouette, tool="preview"))
+        frame = self.frame(number).outlined({component: drafted}, self._settings)
+        self._hulls.preview(self._with(frame), component, self._settings)
 
     def end_preview(self) -> None:
-        """Show the hull itself again."""
-        if self._is_preview:
-            self._changed()
+        """Show the hulls themselves again."""
+        self._hulls.end_preview(self._frames)
 
-    def _based(self, number: int, base_revision: int) -> History:
-        history = self.frame(number).history
+    def _based(self, number: int, component: str, base_revision: int) -> History:
+        history = self.frame(number).layer(component).history
         history.check(base_revision)
         return history
 
-    def _revise(self, histories: Mapping[int, History], tool: str) -> tuple[AnalysedFrame, ...]:
+    def _revise(self, histories: Mapping[Key, History], tool: str) -> tuple[AnalysedFrame, ...]:
         """Let frames' outlines follow their histories, and note that in the journal."""
-        before = {number: self.frame(number) for number in histories}
-        after = {
-            n: replace(self._with_outline(before[n], history.present.silhouette), history=history)
-            for n, history in histories.items()
-        }
+        before = {key: self.frame(key[0]) for key in histories}
+        after = {frame.number: frame for frame in before.values()}
+        for (number, component), history in histories.items():
+            after[number] = after[number].outlined({component: history}, self._settings)
         self._adopt([after.get(frame.number, frame) for frame in self._frames])
+        self._components |= dict.fromkeys((component for _, component in histories), True)
         self._journal += [
             Edit(
                 frame=number,
                 revision=history.revision,
                 tool=tool,
-                before=before[number].silhouette,
+                before=before[number, component].layer(component).silhouette,
                 after=history.present.silhouette,
             )
-            for number, history in histories.items()
+            for (number, component), history in histories.items()
         ]
         return tuple(after.values())
-
-    def _with_outline(self, frame: AnalysedFrame, silhouette: Silhouette) -> AnalysedFrame:
-        return replace(frame, ballot=ballot_of(frame.received, silhouette, self._settings))
 
     def _with(self, frame: AnalysedFrame) -> list[AnalysedFrame]:
         """Return the frames with one in the place of its number."""
         return [frame if f.number == frame.number else f for f in self._frames]
 
-    def _adopt(self, frames: list[AnalysedFrame]) -> None:
-        _carve(self._volume, frames, self._settings)
-        self._frames = frames
-        self._changed()
-
-    def _changed(self, *, is_preview: bool = False) -> None:
-        self._is_preview = is_preview
-        self._revision += 1
-        self._shown = None
-
-    def _now(self) -> tuple[Hull, Surface]:
-        """Return hull and surface, meshed and measured when first asked for."""
-        if self._shown is None:
-            is_preview = self._is_preview and self._coarse is not None
-            volume = self._coarse if is_preview and self._coarse is not None else self._volume
-            surface = self._surface_of(volume) if volume.view_count else EMPTY_SURFACE
-            hull = hull_of(volume, surface, revision=self._revision, is_preview=is_preview)
-            self._shown = hull, surface
-        return self._shown
-
-
-def _carve(
-    volume: VoteVolume, frames: Sequence[AnalysedFrame], settings: ReconstructionSettings
-) -> None:
-    places = [frame.place for frame in frames]
-    voting = sum(place.votes for place in places)
-    bring_in_step(volume, places, vote_threshold(voting, settings))
+    def _adopt(
+        self, frames: list[AnalysedFrame], settings: ReconstructionSettings | None = None
+    ) -> None:
+        settings = settings or self._settings
+        self._hulls.follow(frames, settings, self._frames, self._settings)
+        self._frames, self._settings = frames, settings
 
 
 def _count_alike(one: ReconstructionSettings, other: ReconstructionSettings) -> bool:
     """Tell whether each frame's votes are the same, whichever frames vote and how many it takes."""
     misses, frames = other.tolerated_misses, other.frame_range
     return replace(one, tolerated_misses=misses, frame_range=frames) == other
-
-
-def _grid(settings: ReconstructionSettings) -> VoxelGrid:
-    return VoxelGrid.cube(side_m=settings.side_m, spacing_m=settings.spacing_m)
-
-
-def _coarse_grid(settings: ReconstructionSettings) -> VoxelGrid:
-    spacing_m = max(settings.spacing_m, settings.side_m / PREVIEW_VOXELS)
-    return VoxelGrid.cube(side_m=settings.side_m, spacing_m=spacing_m)

@@ -1,7 +1,7 @@
 """Outlines of all frames taken from their images anew, by other settings."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -44,7 +44,7 @@ def extracted_again(
 ) -> Extracted:
     """Return the outlines that other settings find, where they differ from the present ones.
 
-    The component's label stays. Edited outlines are kept unless `overwrites_edited`.
+    Only the whole target's are. Edited outlines are kept unless `overwrites_edited`.
 
     Raises:
         ValueError: a frame without contrast.
@@ -54,7 +54,7 @@ def extracted_again(
     found = {f.number: extract_silhouette(f.received, extraction) for f in due}
     return Extracted(
         outlines={
-            f.number: replace(found[f.number], component=f.silhouette.component)
+            f.number: found[f.number]
             for f in due
             if f.history.is_edited or not _is_same(found[f.number], f.silhouette)
         },

@@ -24,7 +24,7 @@ class Edit:
         frame: number of the frame, from 1.
         revision: of its outline after the edit.
         tool: that made it; "undo" and "redo" are tools too.
-        before, after: the outlines.
+        before, after: the outlines, of one component.
     """
 
     frame: int
@@ -32,6 +32,11 @@ class Edit:
     tool: str
     before: Silhouette
     after: Silhouette
+
+    @property
+    def component(self) -> str:
+        """What the outlines show."""
+        return self.after.component
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

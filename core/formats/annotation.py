@@ -4,6 +4,9 @@ Inside, pixel centres are integers. Annotation tools count from the upper left c
 where (x, y) = (0, 0), so that the centre of its first pixel lies at (0.5, 0.5):
 x = column + 0.5 and y = row + 0.5.
 
+A file that gives some outline the label of the whole target keeps labels apart: the others are
+parts of it. In any other file all that a frame shows is the target, whatever it is called there.
+
 Frames are told apart by the number in the name of their image, from 1: "frame-000012.png".
 """
 
@@ -32,7 +35,7 @@ OWN_FIELD = "radarhull"
 """Under which files carry what their format has no word for; other programs read past it."""
 
 Outlines = Iterable[tuple[int, Silhouette]]
-"""Numbers of frames, from 1, with their silhouettes."""
+"""Numbers of frames, from 1, with their silhouettes; one of each component that a frame shows."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -45,7 +48,7 @@ class Annotation:
             says that the frame shows no target.
         image_shape: (rows, columns) that the file states.
         claim: what the outline claims to show, None where the file does not say.
-        component: what it outlines, None where the file does not say it of all parts alike.
+        component: what it outlines, None where the file does not tell parts from the whole.
         is_mask: whether the rings run around whole pixels, for the file knows no others.
     """
 
@@ -119,10 +122,12 @@ def mask_rings(mask: NDArray[np.bool_]) -> tuple[Floats, ...]:
     return traced_rings(np.where(mask, np.float32(1), np.float32(-1)), 0.0)
 
 
-def common(names: Iterable[str]) -> str | None:
-    """Return the one name that all have, None where they differ or there is none."""
-    different = set(names)
-    return different.pop() if len(different) == 1 else None
+def by_frame(outlines: Outlines) -> dict[int, list[Silhouette]]:
+    """Return the silhouettes of each frame."""
+    frames: dict[int, list[Silhouette]] = {}
+    for number, silhouette in outlines:
+        frames.setdefault(number, []).append(silhouette)
+    return frames
 
 
 def stated_claim(own: Any) -> Claim | None:

@@ -9,12 +9,13 @@ from core.formats.archive import unpacked
 from core.formats.coco import read_coco
 from core.formats.labelme import read_labelme
 from core.formats.masks import read_mask
+from core.silhouettes.silhouette import WHOLE
 
 KINDS = "COCO JSON, labelme JSON, a PNG mask, or a ZIP archive of them"
 
 
 def read_annotations(content: bytes, name: str) -> tuple[Annotation, ...]:
-    """Return the outlines in a file, each frame's once, in the order of the frames.
+    """Return the outlines in a file, of each component in a frame one, in the order of the frames.
 
     An archive's JSON files are read if it has any, else its PNG files, for images lie beside
     labelme's files.
@@ -25,7 +26,7 @@ def read_annotations(content: bytes, name: str) -> tuple[Annotation, ...]:
 
     Raises:
         ValueError: none of these, one that is damaged or too large, no outline in it, or two of
-            the same frame.
+            the same component in a frame.
     """
     if content.startswith(b"PK"):
         members = list(unpacked(content))
@@ -36,9 +37,9 @@ def read_annotations(content: bytes, name: str) -> tuple[Annotation, ...]:
         found = list(_read_one(content, name))
     if not found:
         raise ValueError(f'"{name[:80]}" holds no outline; wanted {KINDS}.')
-    found.sort(key=lambda each: each.number)
+    found.sort(key=_key)
     for one, next_one in pairwise(found):
-        if one.number == next_one.number:
+        if _key(one) == _key(next_one):
             raise ValueError(
                 f'"{name[:80]}" holds two outlines of frame {one.number}; one is needed.'
             )
@@ -52,9 +53,12 @@ def _read_one(content: bytes, name: str) -> tuple[Annotation, ...]:
     if isinstance(parsed, dict) and "annotations" in parsed:
         return read_coco(parsed)
     if isinstance(parsed, dict) and "shapes" in parsed:
-        annotation = read_labelme(parsed, name)
-        return () if annotation is None else (annotation,)
+        return read_labelme(parsed, name)
     raise ValueError(f'"{name[:80]}" is JSON, but neither COCO nor labelme; wanted {KINDS}.')
+
+
+def _key(annotation: Annotation) -> tuple[int, str]:
+    return annotation.number, annotation.component or WHOLE
 
 
 def _parsed(content: bytes, name: str) -> Any:

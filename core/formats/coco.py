@@ -1,4 +1,4 @@
-"""Silhouettes as COCO JSON: one annotation per frame.
+"""Silhouettes as COCO JSON: one annotation for each component in a frame.
 
 COCO's polygons cannot say holes. An outline without holes is written as polygons, in corner
 coordinates, so that sub-pixel vertices stay; one with holes as an uncompressed run-length mask,
@@ -18,8 +18,8 @@ from core.formats.annotation import (
     OWN_FIELD,
     Annotation,
     Outlines,
+    by_frame,
     combined,
-    common,
     frame_number,
     from_xy,
     image_name,
@@ -30,20 +30,23 @@ from core.formats.annotation import (
     to_xy,
     turned,
 )
-from core.silhouettes.silhouette import Silhouette, clockwise_area_px
+from core.silhouettes.silhouette import WHOLE, Silhouette, clockwise_area_px
 
 
 def coco_json(outlines: Outlines) -> bytes:
     """Return silhouettes as a COCO file; `Annotation`s read from it have the same rings."""
-    images, annotations = [], []
-    categories: dict[str, int] = {}
-    for number, silhouette in outlines:
-        images.append(_image(number, silhouette))
-        if not silhouette.is_empty:
-            category = categories.setdefault(silhouette.component, len(categories) + 1)
-            annotations.append(_annotation(number, silhouette, category))
+    images = []
+    annotations: list[dict[str, Any]] = []
+    categories = {WHOLE: 1}
+    for number, silhouettes in by_frame(outlines).items():
+        images.append(_image(number, silhouettes))
+        for silhouette in silhouettes:
+            if not silhouette.is_empty:
+                category = categories.setdefault(silhouette.component, len(categories) + 1)
+                each = _annotation(number, silhouette, category)
+                annotations.append({"id": len(annotations) + 1, **each})
     content = {
-        "info": {"description": "Silhouettes of radarhull, one per frame", "version": "1.0"},
+        "info": {"description": "Silhouettes of radarhull", "version": "1.0"},
         "licenses": [],
         "images": images,
         "annotations": annotations,
@@ -57,8 +60,9 @@ def coco_json(outlines: Outlines) -> bytes:
 def read_coco(content: Any) -> tuple[Annotation, ...]:
     """Return the outlines of a parsed COCO file, in the order of its images.
 
-    Several annotations of an image are one outline. Images without any are left out, unless the
-    file says that they show no target.
+    Several annotations of an image are one outline of each label, or of the target where the file
+    has no category of that name. Images without any are left out, unless the file says that they
+    show no target.
 
     Raises:
         ValueError: no COCO file, names without a frame's number, one number twice, or outlines
@@ -72,19 +76,20 @@ def read_coco(content: Any) -> tuple[Annotation, ...]:
     for each in member(content, "annotations", list, "A COCO file"):
         of_image[member(each, "image_id", int, "An annotation of the COCO file")].append(each)
     return tuple(
-        _read_image(image, of_image[image["id"]], names)
+        annotation
         for image in member(content, "images", list, "A COCO file")
-        if of_image[member(image, "id", int, "An image of the COCO file")]
-        or image.get(OWN_FIELD) == _NO_TARGET
+        for annotation in _read_image(
+            image, of_image[member(image, "id", int, "An image of the COCO file")], names
+        )
     )
 
 
 _NO_TARGET = {"shows_target": False}
 
 
-def _image(number: int, silhouette: Silhouette) -> dict[str, Any]:
-    rows, columns = silhouette.image_shape
-    own = {OWN_FIELD: _NO_TARGET} if silhouette.is_empty else {}
+def _image(number: int, silhouettes: list[Silhouette]) -> dict[str, Any]:
+    rows, columns = silhouettes[0].image_shape
+    own = {OWN_FIELD: _NO_TARGET} if silhouettes[0].is_empty else {}
     name = image_name(number)
     return {"id": number, "file_name": name, "height": rows, "width": columns, **own}
 
@@ -99,7 +104,6 @@ def _annotation(number: int, silhouette: Silhouette, category: int) -> dict[str,
     else:
         segmentation = [np.ravel(to_xy(ring)).tolist() for ring in silhouette.rings]
     return {
-        "id": number,
         "image_id": number,
         "category_id": category,
         "iscrowd": int(isinstance(segmentation, dict)),
@@ -114,19 +118,30 @@ def _has_holes(rings: tuple[Floats, ...]) -> bool:
     return any(clockwise_area_px(ring) < 0 for ring in rings)
 
 
-def _read_image(image: Any, annotations: list[Any], names: dict[int, str]) -> Annotation:
-    name = member(image, "file_name", str, "An image of the COCO file")
-    where = f'The image "{name[:80]}"'
+def _read_image(
+    image: Any, annotations: list[Any], names: dict[int, str]
+) -> tuple[Annotation, ...]:
+    where = f'The image "{member(image, "file_name", str, "An image of the COCO file")[:80]}"'
+    groups: dict[str | None, list[Any]] = defaultdict(list)
+    for each in annotations:
+        kind = member(each, "category_id", int, f"An annotation of {where}")
+        groups[names.get(kind) if WHOLE in names.values() else None].append(each)
+    # That it shows no target is said of the whole, beside whatever parts it may show.
+    if image.get(OWN_FIELD) == _NO_TARGET and WHOLE not in groups and None not in groups:
+        groups[WHOLE] = []
+    return tuple(_read_group(image, group, label, where) for label, group in groups.items())
+
+
+def _read_group(image: Any, annotations: list[Any], label: str | None, where: str) -> Annotation:
     shape = stated_shape(image, "height", "width", where)
     parts = [_rings(each, shape, where) for each in annotations]
     claims = {stated_claim(each.get(OWN_FIELD)) for each in annotations}
-    kinds = (member(each, "category_id", int, f"An annotation of {where}") for each in annotations)
     return Annotation(
-        number=frame_number(name),
+        number=frame_number(image["file_name"]),
         rings=combined(parts),
         image_shape=shape,
         claim=claims.pop() if len(claims) == 1 else None,
-        component=common(names.get(kind, "") for kind in kinds) or None,
+        component=label,
     )
 
 

@@ -1,18 +1,19 @@
 """Silhouettes as labelme writes them: a JSON file per frame, each ring a polygon.
 
 labelme has no word for holes either. The rings of an outline share a group, and those of holes
-carry the flag "hole", which labelme shows and keeps.
+carry the flag "hole", which labelme shows and keeps. The label is the component.
 """
 
 import json
+from collections import defaultdict
 from typing import Any
 
 from core.formats.annotation import (
     OWN_FIELD,
     Annotation,
     Outlines,
+    by_frame,
     combined,
-    common,
     frame_number,
     from_xy,
     image_name,
@@ -23,7 +24,7 @@ from core.formats.annotation import (
     turned,
 )
 from core.formats.archive import packed
-from core.silhouettes.silhouette import Silhouette, clockwise_area_px
+from core.silhouettes.silhouette import WHOLE, Silhouette, clockwise_area_px
 
 HOLE = "hole"
 NO_TARGET = "no target"
@@ -32,13 +33,13 @@ NO_TARGET = "no target"
 def labelme_zip(outlines: Outlines) -> bytes:
     """Return silhouettes as a ZIP archive of labelme files, for images beside them."""
     return packed(
-        (image_name(number, ".json"), json.dumps(_content(number, silhouette), indent=1).encode())
-        for number, silhouette in outlines
+        (image_name(number, ".json"), json.dumps(_content(number, each), indent=1).encode())
+        for number, each in by_frame(outlines).items()
     )
 
 
-def read_labelme(content: Any, name: str) -> Annotation | None:
-    """Return the outline of a parsed labelme file, None where it has no shapes.
+def read_labelme(content: Any, name: str) -> tuple[Annotation, ...]:
+    """Return the outlines of a parsed labelme file, of each label one; none where it has no shapes.
 
     Args:
         content: of the file.
@@ -48,41 +49,63 @@ def read_labelme(content: Any, name: str) -> Annotation | None:
         ValueError: no labelme file, no number in its name, or shapes that are no polygons.
     """
     where = f'The file "{name[:80]}"'
+    groups: dict[str | None, list[Any]] = defaultdict(list)
     shapes = member(content, "shapes", list, where)
+    tells_parts = OWN_FIELD in content or any(_label(each, where) == WHOLE for each in shapes)
+    for each in shapes:
+        groups[_label(each, where) if tells_parts else None].append(each)
     flags = content.get("flags")
-    if not shapes and not (isinstance(flags, dict) and flags.get(NO_TARGET) is True):
-        return None
+    is_empty = isinstance(flags, dict) and flags.get(NO_TARGET) is True
+    if is_empty and WHOLE not in groups and None not in groups:
+        groups[WHOLE] = []
+    return tuple(_read_group(content, group, label, name) for label, group in groups.items())
+
+
+def _read_group(content: Any, shapes: list[Any], label: str | None, name: str) -> Annotation:
+    where = f'The file "{name[:80]}"'
+    own = content.get(OWN_FIELD)
+    claims = own.get("claims") if isinstance(own, dict) else None
+    claim = claims.get(label or WHOLE) if isinstance(claims, dict) else None
     rings = tuple(turned(_ring(each, where), clockwise=not _is_hole(each)) for each in shapes)
     return Annotation(
         number=frame_number(name),
         rings=combined([rings]),
         image_shape=stated_shape(content, "imageHeight", "imageWidth", where),
-        claim=stated_claim(content.get(OWN_FIELD)),
-        component=common(member(shape, "label", str, where) for shape in shapes),
+        claim=stated_claim({"claim": claim}),
+        component=label,
     )
 
 
-def _content(number: int, silhouette: Silhouette) -> dict[str, Any]:
-    rows, columns = silhouette.image_shape
+def _label(shape: Any, where: str) -> str:
+    label: str = member(shape, "label", str, f"A shape of {where}")
+    return label
+
+
+def _content(number: int, silhouettes: list[Silhouette]) -> dict[str, Any]:
+    rows, columns = silhouettes[0].image_shape
     return {
         "version": "5.5.0",
-        "flags": {NO_TARGET: silhouette.is_empty},
+        "flags": {NO_TARGET: silhouettes[0].is_empty},
         "shapes": [
             {
                 "label": silhouette.component,
                 "points": to_xy(ring),
-                "group_id": 1,
+                "group_id": group,
                 "description": "",
                 "shape_type": "polygon",
                 "flags": {HOLE: clockwise_area_px(ring) < 0},
             }
+            for group, silhouette in enumerate(silhouettes, start=1)
             for ring in silhouette.rings
         ],
         "imagePath": image_name(number),
         "imageData": None,
         "imageHeight": rows,
         "imageWidth": columns,
-        OWN_FIELD: {"claim": silhouette.claim, "provenance": silhouette.provenance},
+        OWN_FIELD: {
+            "claims": {each.component: each.claim for each in silhouettes},
+            "provenance": {each.component: each.provenance for each in silhouettes},
+        },
     }
 
 

@@ -1,7 +1,10 @@
 """Silhouettes as PNG masks: 8 bits, 255 where a pixel's centre lies inside, 0 elsewhere.
 
-A mask knows whole pixels only; what comes back encloses the same pixel centres.
+A mask knows whole pixels only; what comes back encloses the same pixel centres. Those of a part lie
+in a folder that is called after it, "parts/solar%20panel/frame-000012.png".
 """
+
+from urllib.parse import quote, unquote
 
 import cv2
 import numpy as np
@@ -16,6 +19,9 @@ from core.formats.annotation import (
     mask_rings,
 )
 from core.formats.archive import packed
+from core.silhouettes.silhouette import WHOLE, Silhouette
+
+PARTS = "parts"
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _SIZE_AT = slice(16, 24)
@@ -23,8 +29,8 @@ _SIZE_AT = slice(16, 24)
 
 
 def masks_zip(outlines: Outlines) -> bytes:
-    """Return silhouettes as a ZIP archive of masks, one per frame."""
-    return packed((image_name(number), mask_png(each.mask())) for number, each in outlines)
+    """Return silhouettes as a ZIP archive of masks, one per frame and component."""
+    return packed((_name(number, each), mask_png(each.mask())) for number, each in outlines)
 
 
 def mask_png(mask: NDArray[np.bool_]) -> bytes:
@@ -54,9 +60,21 @@ def read_mask(content: bytes, name: str) -> Annotation:
     return Annotation(
         number=frame_number(name),
         rings=mask_rings(pixels.astype(bool)),
+        component=_component(name),
         image_shape=shape,
         is_mask=True,
     )
+
+
+def _name(number: int, silhouette: Silhouette) -> str:
+    if silhouette.component == WHOLE:
+        return image_name(number)
+    return f"{PARTS}/{quote(silhouette.component, safe='')}/{image_name(number)}"
+
+
+def _component(name: str) -> str | None:
+    above, _, folder = name.rpartition("/")[0].rpartition("/")
+    return unquote(folder) if above.rpartition("/")[2] == PARTS else None
 
 
 def _decoded(content: bytes) -> NDArray[np.generic] | None:

@@ -11,6 +11,9 @@ from core.arrays import Floats, frozen
 
 Claim = Literal["lit side", "complete"]
 
+WHOLE = "target"
+"""The component that is all of the target."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Silhouette:
@@ -29,7 +32,7 @@ class Silhouette:
     rings: tuple[Floats, ...]
     image_shape: tuple[int, int]
     claim: Claim
-    component: str = "target"
+    component: str = WHOLE
     provenance: str = ""
 
     def __post_init__(self) -> None:

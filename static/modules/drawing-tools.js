@@ -91,7 +91,8 @@ export function livewireTool(editor) {
     if (draft.marks.length < 2) return editor.redraw();
     try {
       const parameters = { points: draft.marks };
-      const { path } = await propose(session.frame.number, "livewire", parameters, session.rings);
+      const { frame, component, rings } = session;
+      const { path } = await propose(frame.number, component, "livewire", parameters, rings);
       if (own === asked) draft.points = path;
     } catch (error) {
       editor.complain(error.message);

@@ -7,7 +7,7 @@ import { LayerLegend } from "./layer-legend.js";
 import { withUnit } from "./numbers.js";
 import { COLOURS, Overlay } from "./overlay.js";
 import { composed } from "./screenshot.js";
-import { getJson, getLevels } from "./server.js";
+import { framePath, getJson, getLevels } from "./server.js";
 import { Session } from "./session.js";
 
 const part = (id) => document.getElementById(id);
@@ -79,7 +79,7 @@ export class FramePanel {
     this.#arrange();
     this.#overlay.draw({ ...this.scene, isEditable: false, isHidden: false, brush: null, draft: null });
     const canvases = [part("frame-canvas"), part("overlay-canvas")];
-    const legend = [[COLOURS.outline, "outline"], ...this.#legend.entries()];
+    const legend = [[this.scene.colour, "outline"], ...this.#legend.entries()];
     const whole = composed(canvases, { title, stamp: `frame ${frameStamp(frame)}`, legend });
     this.redraw();
     return whole;
@@ -93,6 +93,8 @@ export class FramePanel {
       rings: frame && session.rings,
       claim: session.claim,
       component: session.component,
+      colour: session.component === "target" ? COLOURS.outline : frame?.colour,
+      others: frame?.others ?? [],
       isEditable: session.isEditable,
       mine: session.conflict?.rings ?? null,
       shape: frame?.shape,
@@ -112,7 +114,8 @@ export class FramePanel {
   }
 
   async fetch(number) {
-    return Promise.all([getJson(`/api/frames/${number}`), getLevels(number)]);
+    const path = framePath(number, this.session.component);
+    return Promise.all([getJson(path), getLevels(number)]);
   }
 
   take(frame, levels) {
@@ -136,10 +139,11 @@ export class FramePanel {
     part("frame-canvas").dataset.frame = 0;
   }
 
-  /** Follow the hull and the rule by which it is carved. */
-  follow({ hull, carving }) {
+  /** Follow the hull of what is outlined, and the rule by which it is carved. */
+  follow({ hull, carving, components }) {
     this.#rule = carving.rule;
-    this.bringOverlays(hull?.revision);
+    const own = components.find(({ label }) => label === this.session.component);
+    this.bringOverlays((own?.hull ?? hull)?.revision);
   }
 
   /** Get what lies under the outline anew where the frame or the hull is another. */
@@ -149,7 +153,7 @@ export class FramePanel {
     if (!wantsGhost) this.scene.ghost = null;
     if (!wantsHull) this.scene.reprojection = null;
     const { number } = this.session.frame ?? {};
-    const wanted = [number, hull, wantsGhost, wantsHull].join("/");
+    const wanted = [number, this.session.component, hull, wantsGhost, wantsHull].join("/");
     this.redraw();
     if (wanted === this.#seenOverlays && number) return;
     this.#seenOverlays = wanted;
@@ -160,13 +164,14 @@ export class FramePanel {
     const { frame } = this.session;
     if (frame === null) return;
     const { number } = frame;
+    const { component } = this.session;
     const neighbour = number > 1 ? number - 1 : number + 1;
     const get = (name, path) => (this.#layers.has(name) ? getJson(path).catch(() => null) : null);
     const [ghost, hull] = await Promise.all([
-      get("ghost", `/api/frames/${neighbour}`),
-      get("hull", `/api/frames/${number}/reprojection`),
+      get("ghost", framePath(neighbour, component)),
+      get("hull", framePath(number, component, "/reprojection")),
     ]);
-    if (this.session.frame?.number !== number) return;
+    if (this.session.frame?.number !== number || this.session.component !== component) return;
     this.scene.ghost = this.#layers.has("ghost") && ghost ? onto(frame, ghost) : null;
     this.#reprojection = this.#layers.has("hull") ? hull : null;
     this.scene.reprojection = this.#reprojection?.rings ?? null;
@@ -180,12 +185,21 @@ export class FramePanel {
     showNote(part("frame-note"), frame ? noteOf(frame) : "");
     if (frame) showRows(part("frame-facts"), frameRows(frame));
     else part("frame-facts").replaceChildren();
-    this.redraw();
+    showHint(this.session);
+    this.bringOverlays();
     this.#onChange();
   }
 }
 
+/** Begin a part that this frame has no outline of yet. */
+function showHint({ frame, component, rings }) {
+  part("part-hint").hidden = frame === null || component === "target" || rings.length > 0;
+  part("part-hint").textContent = `Draw the ${component} in this frame; frames without it don’t count.`;
+}
+
 function noteOf({ note, silhouette }) {
+  const { component, rings } = silhouette;
+  if (component !== "target" && rings.length === 0) return "";
   return note || (silhouette.repair ?? "").replace(/\.$/, "");
 }
 

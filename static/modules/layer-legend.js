@@ -27,6 +27,7 @@ export class LayerLegend {
       ] : []),
       ...(wantsShadow ? [["shadow", "shadow"]] : []),
       ...(wantsGhost ? [["#b9c4d6", "neighbour"]] : []),
+      ...(frame?.others ?? []).map(({ component, colour }) => [colour, component]),
     ];
     const text = JSON.stringify(this.#entries);
     if (text === this.#seen) return;
@@ -35,14 +36,20 @@ export class LayerLegend {
     this.#place.replaceChildren(...this.#entries.map(([kind, words]) => {
       const row = document.createElement("li");
       const swatch = document.createElement("i");
-      swatch.className = `swatch ${CLASSES[kind] ?? "ghost-line"}`;
+      swatch.className = `swatch ${CLASSES[kind] ?? "other-line"}`;
+      if (!(kind in CLASSES)) swatch.style.borderColor = kind;
       row.append(swatch, words);
       return row;
     }));
   }
 }
 
-const CLASSES = { onlyOutline: "only-outline", onlyHull: "only-hull", shadow: "in-shadow" };
+const CLASSES = {
+  onlyOutline: "only-outline",
+  onlyHull: "only-hull",
+  shadow: "in-shadow",
+  "#b9c4d6": "ghost-line",
+};
 
 /** Whether the areas belong to the outline as it stands on the page, and not to one before it. */
 function isCurrent({ frame, isBusy, isSaving }, { outline_revision: revision }) {

@@ -10,6 +10,8 @@ import { FramePanel } from "./frame-panel.js";
 import { showHull } from "./hull-view.js";
 import { resizablePanes } from "./panes.js";
 import { Loading } from "./loading.js";
+import { Parts } from "./parts.js";
+import { showParts } from "./parts-view.js";
 import { Proposals } from "./proposals.js";
 import { showSaved } from "./saved-view.js";
 import { Review } from "./review.js";
@@ -126,6 +128,14 @@ const carving = new Carving(
     go: showFrame,
   },
 );
+const parts = new Parts(session, {
+  leave: () => {
+    proposals.discard();
+    editor.cancel();
+  },
+  show: showState,
+  complain,
+});
 const transport = new Transport(
   {
     play: part("play"),
@@ -204,6 +214,7 @@ function showState(next) {
   if (before && before.source.key !== state.source.key) forgetSource(before);
   showSource(state);
   showHull(state);
+  showParts(state);
   showBanner();
   loading.update(state);
   exporting.update(state);
@@ -214,8 +225,8 @@ function showState(next) {
   timeline.update(state);
   panel.follow(state);
   proposals.beginWith(state.extraction);
-  toolbar.offerLabels(state.frames_info);
   keyPoints.update(state);
+  parts.update(state);
   space.update(state);
   share.update(state);
   bringFrame();
@@ -229,6 +240,7 @@ function forgetSource(before) {
   complain(isTold ? `${why}: the edits of ${before.source.name} are gone.` : "");
   isAnew = false;
   frameOnShow = "";
+  session.component = "target";
   session.clear();
 }
 
@@ -241,7 +253,7 @@ async function bringFrame() {
     if (state.shown === null) {
       frameOnShow = "";
       panel.clear();
-    } else if (session.isBehind(state.frames_info?.[state.shown - 1]?.revision)) {
+    } else if (session.isBehind(state.frames_info?.[state.shown - 1])) {
       await session.refresh();
     }
   } catch (error) {
@@ -274,6 +286,7 @@ async function fetchFrame(key) {
 function showEditing() {
   toolbar?.update();
   keyPoints?.follow(session.frame);
+  parts?.update();
   rightPane.greyWhile(session.isSaving);
   proposals?.update();
   showBanner();

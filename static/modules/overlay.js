@@ -53,12 +53,13 @@ export class Overlay {
     if (scene.reprojection) this.#drawDisagreement(context, scene);
     if (scene.ghost) this.#line(context, scene.ghost, COLOURS.ghost, 1.25, [2, 3]);
     if (scene.mine) this.#line(context, scene.mine, COLOURS.mine, 1.5, [7, 4]);
-    this.#line(context, scene.rings, COLOURS.outline, 1.75, []);
+    for (const { rings, colour } of scene.others) this.#line(context, rings, colour, 1, []);
+    this.#line(context, scene.rings, scene.colour, 1.75, []);
     if (scene.proposal) this.#line(context, scene.proposal, COLOURS.proposal, 1.75, [6, 4]);
     const hasHandles = scene.isEditable && !scene.proposal && !scene.keyPoints?.isMarking;
     if (hasHandles) this.#drawHandles(context, scene);
     if (scene.draft) this.#drawDraft(context, scene);
-    if (scene.brush) this.#drawBrush(context, scene.brush);
+    if (scene.brush) this.#drawBrush(context, scene.brush, scene.colour);
     if (scene.keyPoints) drawKeyPoints(context, plot, scene.keyPoints);
     context.restore();
     drawClaim(context, plot, scene);
@@ -113,7 +114,7 @@ export class Overlay {
   }
 
   /** Handles of vertices, and of middles of long edges; near the cursor only where they crowd. */
-  #drawHandles(context, { rings, cursor, selected, hovered }) {
+  #drawHandles(context, { rings, colour, cursor, selected, hovered }) {
     const cursorPlace = cursor && onCanvas(this.#plot, ...cursor);
     const isNear = (place) => cursorPlace !== null && between(place, cursorPlace) < NEAR_PX;
     rings.forEach((ring, ringIndex) => {
@@ -123,9 +124,9 @@ export class Overlay {
         const next = places[(index + 1) % places.length];
         const middle = middleOf(place, next);
         if (between(place, next) > MIDDLE_FROM_PX && (isSparse || isNear(middle))) {
-          dot(context, middle, 3, COLOURS.dark, COLOURS.outline);
+          dot(context, middle, 3, COLOURS.dark, colour);
         }
-        if (isSparse || isNear(place)) dot(context, place, isSparse ? 4 : 3, COLOURS.outline, COLOURS.dark);
+        if (isSparse || isNear(place)) dot(context, place, isSparse ? 4 : 3, colour, COLOURS.dark);
       });
     });
     for (const [mark, radius] of [[hovered, 5.5], [selected, 6]]) {
@@ -143,10 +144,10 @@ export class Overlay {
     }
   }
 
-  #drawBrush(context, { points, centre, radius, isAdding }) {
+  #drawBrush(context, { points, centre, radius, isAdding }, own) {
     const pixel = this.#plot.height / this.#plot.rows;
     const across = this.#plot.width / this.#plot.columns;
-    const colour = isAdding ? COLOURS.outline : COLOURS.cut;
+    const colour = isAdding ? own : COLOURS.cut;
     if (points.length > 0) {
       this.#trace(context, [points], false);
       if (points.length === 1) context.lineTo(...onCanvas(this.#plot, points[0][0], points[0][1] + 1e-3));
@@ -167,7 +168,8 @@ export class Overlay {
 }
 
 /** What the outline claims to show, and of which part, in the plot's lower left corner. */
-function drawClaim(context, plot, { claim, component, rings }) {
+function drawClaim(context, plot, { claim, component, colour, rings }) {
+  if (rings.length === 0 && component !== "target") return;
   const shown = claim === "complete" ? "complete outline" : "lit side";
   const named = component === "target" ? shown : `${component}, ${shown}`;
   const text = rings.length === 0 ? "no target" : named;
@@ -179,7 +181,7 @@ function drawClaim(context, plot, { claim, component, rings }) {
   context.beginPath();
   context.roundRect(plot.x + 8, plot.y + plot.height - 32, width, 24, 5);
   context.fill();
-  context.fillStyle = claim === "complete" && rings.length > 0 ? COLOURS.proposal : COLOURS.outline;
+  context.fillStyle = claim === "complete" && rings.length > 0 && component === "target" ? COLOURS.proposal : colour;
   context.fillText(text, plot.x + 16, plot.y + plot.height - 20);
 }
 

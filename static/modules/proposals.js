@@ -144,11 +144,12 @@ export class Proposals {
 
   async #ask() {
     const tool = this.#tool;
-    const { frame, rings } = this.#session;
+    const { frame, component, rings } = this.#session;
     const parameters = this.#parameters(tool, frame.number);
     if (parameters === null) return;
     try {
-      const found = await propose(frame.number, tool.name, parameters, rings);
+      const found = await propose(frame.number, component, tool.name, parameters, rings);
+      if (component !== this.#session.component) return;
       if (tool !== this.#tool || frame.number !== this.#session.frame?.number) return;
       this.#found = found;
       this.#session.preview(found.rings, tool.name, found.claim);

@@ -65,6 +65,7 @@ export class RightPane {
   #grey() {
     const isOld = this.#waiting > 0 || this.#isSaving;
     part("hull-body").classList.toggle("stale", isOld);
+    part("parts").classList.toggle("stale", isOld);
     part("hull-body").ariaBusy = String(isOld);
   }
 

@@ -10,6 +10,12 @@ export async function getJson(path) {
   return (await answered(path)).json();
 }
 
+/** Where the server has a frame, with the outline of one component. */
+export function framePath(number, component, what = "") {
+  const query = component === "target" ? "" : `?component=${encodeURIComponent(component)}`;
+  return `/api/frames/${number}${what}${query}`;
+}
+
 /** Send JSON by a method and return the answer. */
 export async function send(method, path, body) {
   const response = await answered(path, {
@@ -40,9 +46,9 @@ export function upload(path, file, tell) {
   return { done, cancel: () => request.abort() };
 }
 
-/** Ask what a tool would make of a frame's outline; changes nothing. */
-export function propose(number, tool, parameters, rings) {
-  const body = { tool, parameters, rings: rings.length > 0 ? rounded(rings) : null };
+/** Ask what a tool would make of a component's outline in a frame; changes nothing. */
+export function propose(number, component, tool, parameters, rings) {
+  const body = { tool, component, parameters, rings: rings.length > 0 ? rounded(rings) : null };
   return send("POST", `/api/frames/${number}/proposals`, body);
 }
 

@@ -3,7 +3,7 @@
 import { EditTrail } from "./edit-trail.js";
 import { Latest } from "./latest.js";
 import { copied, rounded, sameRings } from "./rings.js";
-import { getJson, send } from "./server.js";
+import { framePath, getJson, send } from "./server.js";
 
 const PREVIEW_PAUSE_MS = 30;
 
@@ -11,7 +11,7 @@ export class Session {
   frame = null;
   rings = [];
   claim = "lit side";
-  /** Which part of the target it outlines. */
+  /** What it outlines: the whole target or a part of it; another frame's is of the same. */
   component = "target";
   /** Whether somebody is drawing, so that news from the server must wait. */
   isBusy = false;
@@ -23,7 +23,8 @@ export class Session {
   #pending = 0;
   #chain = Promise.resolve();
   #hasPreview = false;
-  #trail = new EditTrail();
+  /** By component. */
+  #trails = new Map();
   #onChange;
   #onComplaint;
   #onGo;
@@ -49,13 +50,24 @@ export class Session {
 
   /** Take a frame as the server gives it. */
   adopt(frame) {
-    if (this.frame && this.frame.number !== frame.number) this.conflict = null;
+    const { component } = frame.silhouette;
+    const isSame = this.frame?.number === frame.number && this.component === component;
+    if (!isSame) this.conflict = null;
     this.frame = frame;
     this.rings = copied(frame.silhouette.rings);
     this.claim = frame.silhouette.claim;
-    this.component = frame.silhouette.component;
-    this.#revisions.set(frame.number, frame.silhouette.revision);
+    this.component = component;
+    this.#note(frame);
     this.#onChange();
+  }
+
+  /** Go over to the outline of another component; raises what the server says to its name. */
+  async choose(component) {
+    await this.#chain;
+    await this.withdraw();
+    const { number } = this.frame;
+    const frame = await getJson(framePath(number, component));
+    if (this.frame?.number === number) this.adopt(frame);
   }
 
   clear() {
@@ -63,14 +75,16 @@ export class Session {
     this.frame = null;
     this.rings = [];
     this.conflict = null;
-    this.#trail = new EditTrail();
+    this.#trails.clear();
     this.#onChange();
   }
 
-  /** Whether the server has a newer outline of the frame on show than this page. */
-  isBehind(revision) {
-    return this.isEditable && !this.isBusy && !this.isSaving && this.conflict === null &&
-      revision > this.#revisions.get(this.frame.number);
+  /** Whether the server has a newer outline in the frame on show, of any component, than this page. */
+  isBehind(info) {
+    if (!info || !this.isEditable || this.isBusy || this.isSaving || this.conflict !== null) return false;
+    const own = this.#revision(this.frame.number, this.component);
+    const known = { ...this.frame.revisions, [this.component]: own };
+    return Object.entries(info.revisions).some(([label, revision]) => revision > (known[label] ?? -1));
   }
 
   /** Change the outline on the page, and let the hull follow without keeping it. */
@@ -93,18 +107,17 @@ export class Session {
     const { number } = this.frame;
     this.#hasPreview = false;
     await this.#preview.stop();
-    await send("DELETE", `/api/frames/${number}/preview`).catch((error) => {
+    await send("DELETE", framePath(number, this.component, "/preview")).catch((error) => {
       this.#onComplaint(error.message);
     });
   }
 
   /** Keep an outline: on the page at once, on the server as soon as it answers. */
-  commit(rings, tool, claim = this.claim, component = this.component) {
+  commit(rings, tool, claim = this.claim) {
     if (!this.isEditable) return this.#chain;
     const { number, silhouette } = this.frame;
-    const isSame = claim === silhouette.claim && component === silhouette.component &&
-      sameRings(rings, silhouette.rings);
-    Object.assign(this, { rings, claim, component });
+    const isSame = claim === silhouette.claim && sameRings(rings, silhouette.rings);
+    Object.assign(this, { rings, claim });
     this.#onChange();
     if (isSame && !this.isSaving) return this.withdraw();
     const job = { number, epoch: this.#epoch, ...this.#body(rings, claim, tool) };
@@ -125,7 +138,7 @@ export class Session {
     if (!this.isEditable) return null;
     const { number, silhouette } = this.frame;
     if (this.isSaving || silhouette[`can_${direction}`]) return number;
-    return this.#trail.elsewhere(direction, number);
+    return this.#trail(this.component).elsewhere(direction, number);
   }
 
   /** After a conflict: put this page's outline over the other one. */
@@ -133,7 +146,7 @@ export class Session {
     const mine = this.conflict;
     this.conflict = null;
     if (mine && mine.number === this.frame?.number) {
-      this.commit(mine.rings, mine.tool, mine.claim, mine.component);
+      this.commit(mine.rings, mine.tool, mine.claim);
     }
   }
 
@@ -146,7 +159,7 @@ export class Session {
   async refresh() {
     const { number } = this.frame;
     try {
-      this.#arrive(await getJson(`/api/frames/${number}`));
+      this.#arrive(await getJson(framePath(number, this.component)));
     } catch (error) {
       this.#onComplaint(error.message);
     }
@@ -155,13 +168,14 @@ export class Session {
   #travel(direction) {
     if (!this.isEditable || this.isBusy) return this.#chain;
     const { number } = this.frame;
+    const { component } = this;
     const target = this.targetOf(direction);
     if (target !== number) return target === null ? this.#chain : this.#onGo(target);
     return this.#queue(async () => {
       this.#preview.forget();
-      const body = { base_revision: this.#revisions.get(number) };
+      const body = { component, base_revision: this.#revision(number, component) };
       const frame = await send("POST", `/api/frames/${number}/${direction}`, body);
-      this.#trail.note(direction, number);
+      this.#trail(component).note(direction, number);
       return frame;
     });
   }
@@ -176,7 +190,7 @@ export class Session {
       } catch (error) {
         this.#onComplaint(error.message);
         // What the server refuses is not on it; the page goes back to what is.
-        const path = `/api/frames/${this.frame?.number}`;
+        const path = framePath(this.frame?.number, this.component);
         frame = error.status ? await getJson(path).catch(() => undefined) : undefined;
       }
       this.#pending -= 1;
@@ -195,10 +209,10 @@ export class Session {
     // One under way is not waited for: after this the server refuses it as made from an old outline.
     this.#preview.forget();
     this.#hasPreview = false;
-    body.base_revision = this.#revisions.get(number);
+    body.base_revision = this.#revision(number, body.component);
     try {
       const frame = await send("PUT", `/api/frames/${number}/silhouette`, body);
-      this.#trail.note("edit", number);
+      this.#trail(body.component).note("edit", number);
       return frame;
     } catch (error) {
       if (epoch !== this.#epoch) throw error;
@@ -212,14 +226,14 @@ export class Session {
   }
 
   async #lose(mine) {
-    const theirs = await getJson(`/api/frames/${mine.number}`);
-    if (this.frame?.number === mine.number) this.conflict = mine;
+    const theirs = await getJson(framePath(mine.number, mine.component));
+    if (this.#isOnShow(theirs)) this.conflict = mine;
     return theirs;
   }
 
   #arrive(frame) {
-    this.#revisions.set(frame.number, frame.silhouette.revision);
-    if (this.frame?.number !== frame.number) return;
+    this.#note(frame);
+    if (!this.#isOnShow(frame)) return;
     // What is being drawn, or waits to be saved, is newer than this answer.
     if (this.isBusy || this.isSaving) this.frame = frame;
     else this.adopt(frame);
@@ -238,7 +252,24 @@ export class Session {
       claim,
       component: this.component,
       tool,
-      base_revision: this.#revisions.get(this.frame.number),
+      base_revision: this.#revision(this.frame.number, this.component),
     };
+  }
+
+  #isOnShow({ number, silhouette }) {
+    return this.frame?.number === number && this.component === silhouette.component;
+  }
+
+  #note({ number, silhouette }) {
+    this.#revisions.set(`${number}/${silhouette.component}`, silhouette.revision);
+  }
+
+  #revision(number, component) {
+    return this.#revisions.get(`${number}/${component}`);
+  }
+
+  #trail(component) {
+    if (!this.#trails.has(component)) this.#trails.set(component, new EditTrail());
+    return this.#trails.get(component);
   }
 }

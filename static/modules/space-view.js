@@ -60,7 +60,7 @@ export class SpaceView {
       part("space-empty").textContent =
         "This browser draws no 3D (WebGL is off or missing); frames, editing and lengths work without it.";
     }
-    const components = (state.frames_info ?? []).map(({ component }) => component).join("/");
+    const components = (state.components ?? []).map(({ label }) => label).join("/");
     if (components !== this.#components) {
       this.#components = components;
       this.#offer().catch((error) => this.#complain(error.message));
@@ -170,8 +170,9 @@ function componentEntry({ label, colour }) {
   const entry = document.createElement("span");
   const swatch = document.createElement("i");
   entry.className = "component";
+  entry.title = label === "target" ? "The whole hull, translucent so that its parts show" : "Hull of this part";
   swatch.className = "swatch";
   swatch.style.setProperty("--swatch", colour);
-  entry.append(swatch, label);
+  entry.append(swatch, label === "target" ? "target (translucent)" : label);
   return entry;
 }

@@ -3,7 +3,6 @@
 import { withUnit } from "./numbers.js";
 
 const part = (id) => document.getElementById(id);
-const LABELS = ["target", "body", "solar panel", "antenna", "boom"];
 
 export class Toolbar {
   #panel;
@@ -21,8 +20,6 @@ export class Toolbar {
     part("undo").addEventListener("click", () => session.undo());
     part("redo").addEventListener("click", () => session.redo());
     part("claim").addEventListener("click", () => this.toggleClaim());
-    part("component").addEventListener("change", () => this.#setComponent());
-    part("component").addEventListener("keydown", (event) => this.#endTyping(event));
     for (const button of this.#layerButtons()) {
       button.addEventListener("click", () => panel.toggleLayer(button.dataset.layer));
     }
@@ -48,14 +45,6 @@ export class Toolbar {
     }
   }
 
-  /** Offer the labels that outlines have, and some that parts of satellites often get. */
-  offerLabels(infos) {
-    const present = infos.map(({ component }) => component);
-    const labels = [...new Set([...LABELS, ...present])];
-    if (labels.length === part("components").children.length) return;
-    part("components").replaceChildren(...labels.map((label) => new Option("", label)));
-  }
-
   update() {
     const { session } = this.#panel;
     const silhouette = session.frame?.silhouette;
@@ -68,8 +57,6 @@ export class Toolbar {
     this.#tellHistory("redo", "Redo", "Ctrl Shift Z");
     part("claim").disabled = !session.isEditable;
     part("claim-text").textContent = session.claim === "complete" ? "Complete" : "Lit side";
-    part("component").disabled = !session.isEditable;
-    if (document.activeElement !== part("component")) part("component").value = session.component;
     const layers = this.#panel.layers();
     for (const button of this.#layerButtons()) {
       button.ariaPressed = String(layers.includes(button.dataset.layer));
@@ -103,19 +90,6 @@ export class Toolbar {
   /** Keep to the choice between target and whole for the next frame, and to a chosen part. */
   keepWindow() {
     this.#panel.view.setWindow(this.#fitsTarget ? this.#windowM() : null);
-  }
-
-  #setComponent() {
-    const { session } = this.#panel;
-    session.commit(session.rings, "label", session.claim, part("component").value.trim());
-  }
-
-  /** Enter keeps what was typed, Escape does not, and both give the keys back to the picture. */
-  #endTyping(event) {
-    if (!["Enter", "Escape"].includes(event.key)) return;
-    event.preventDefault();
-    if (event.key === "Escape") part("component").value = this.#panel.session.component;
-    part("frame-canvas").focus({ preventScroll: true });
   }
 
   #tellHistory(direction, name, keys) {

@@ -31,7 +31,7 @@ def moved(silhouette, step):
 
 
 def commit(of, number, silhouette, tool="move"):
-    revision = of.frame(number).history.revision
+    revision = of.frame(number).layer(silhouette.component).history.revision
     return of.commit(number, silhouette, tool=tool, base_revision=revision)
 
 
@@ -40,15 +40,21 @@ def from_scratch(of):
     fresh = Analysis(of.settings)
     for frame in of.frames:
         fresh.receive(frame.received, frame.silhouette)
+        for label in frame.parts:
+            commit(fresh, frame.number, frame.layer(label).silhouette)
         fresh.set_state(frame.number, frame.state)
     return fresh
 
 
 def assert_same_hull(one, other):
-    assert np.array_equal(one.surface.vertices_m, other.surface.vertices_m)
-    assert np.array_equal(one.surface.faces, other.surface.faces)
-    assert (one.hull.voting, one.hull.threshold) == (other.hull.voting, other.hull.threshold)
-    assert one.hull.volume_m3 == other.hull.volume_m3
+    assert [part.label for part in one.parts] == [part.label for part in other.parts]
+    pairs = [(one, other), *zip(one.parts, other.parts, strict=True)]
+    for mine, theirs in pairs:
+        assert np.array_equal(mine.surface.vertices_m, theirs.surface.vertices_m)
+        assert np.array_equal(mine.surface.faces, theirs.surface.faces)
+        assert mine.hull.voting == theirs.hull.voting
+        assert mine.hull.threshold == theirs.hull.threshold
+        assert mine.hull.volume_m3 == theirs.hull.volume_m3
 
 
 def drag(of, number, random):
@@ -75,6 +81,39 @@ def preview(of, number, random):
     shifted = moved(OUTLINES[1], random.normal(size=2))
     of.preview(number, shifted, base_revision=of.frame(number).history.revision)
     assert of.hull.is_preview
+
+
+def shrunk(silhouette, label, share=0.5):
+    """Return an outline of a part: the target's, drawn together toward its middle."""
+    middle = np.concatenate(silhouette.rings).mean(axis=0)
+    rings = tuple(middle + share * (ring - middle) for ring in silhouette.rings)
+    return replace(silhouette, rings=rings, component=label)
+
+
+def draw_part(of, number, random):
+    outline = shrunk(OUTLINES[random.integers(5)], random.choice(["knife", "panel"]).item())
+    commit(of, number, outline)
+
+
+def undo_part(of, number, random):
+    label = random.choice(["knife", "panel"]).item()
+    history = of.frame(number).layer(label).history
+    with suppress(NothingLeft):
+        step = of.undo if random.random() < 0.6 else of.redo
+        step(number, component=label, base_revision=history.revision)
+
+
+def delete_part(of, number, random):
+    if of.frame(number).parts:
+        of.delete_part(of.frame(number).parts[0])
+
+
+def preview_part(of, number, random):
+    outline = shrunk(OUTLINES[1], "knife")
+    before = of.hull
+    of.preview(number, outline, base_revision=of.frame(number).layer("knife").history.revision)
+    assert of.parts[0].hull.is_preview
+    assert of.hull is before or before.is_preview
 
 
 def rewind(of, number, random):
@@ -113,6 +152,11 @@ OPERATIONS = {
     "preview": preview,
     "end preview": lambda of, n, random: of.end_preview(),
     "receive": lambda of, n, random: of.receive(FRAMES[len(of.frames) % 6]),
+    "part": draw_part,
+    "part again": draw_part,
+    "part undo": undo_part,
+    "part deleted": delete_part,
+    "part preview": preview_part,
     "extract": lambda of, n, random: of.extract_again(ExtractionSettings(closing_px=3)),
     "extract back": take_extraction_back,
     "rewind": rewind,
@@ -130,7 +174,7 @@ def test_the_hull_equals_the_one_from_scratch_after_any_operations(seed, operati
     for operation in operations:
         number = int(random.integers(1, len(of.frames) + 1))
         OPERATIONS[operation](of, number, random)
-        of.hull  # noqa: B018 - meshed at every step, so that the next one meshes what changed
+        of.parts  # noqa: B018 - meshed at every step, so that the next one meshes what changed
     of.end_preview()
     assert_same_hull(of, from_scratch(of))
 
@@ -211,14 +255,13 @@ def test_extracting_again_keeps_edited_outlines_unless_asked():
 def test_an_extraction_leaves_alone_what_it_finds_again_and_can_be_taken_back():
     of = analysis(count=3)
     assert of.extract_again(ExtractionSettings()) == ()
-    labelled = commit(of, 2, replace(OUTLINES[1], component="boom")).silhouette
+    edited = commit(of, 2, replace(OUTLINES[1])).silhouette
     changed = of.extract_again(ExtractionSettings(closing_px=9), overwrites_edited=True)
     assert [frame.number for frame in changed] == [1, 2, 3]
-    assert of.frame(2).silhouette.component == "boom"
     later = commit(of, 3, moved(OUTLINES[2], 1.0)).silhouette
     assert [frame.number for frame in of.undo_extraction()] == [1, 2]
     assert of.frame(1).silhouette is OUTLINES[0]
-    assert of.frame(2).silhouette is labelled
+    assert of.frame(2).silhouette is edited
     assert of.frame(3).silhouette is later
     assert of.settings.extraction == ExtractionSettings()
     assert_same_hull(of, from_scratch(of))
@@ -333,10 +376,10 @@ def test_several_outlines_are_taken_over_together_or_not_at_all():
     )[0]
     outlined = Outlined(silhouette=square, tool="import")
     with pytest.raises(ValueError, match="There is no frame 9"):
-        work.commit_all({1: outlined, 9: outlined}, tool="import")
+        work.commit_all([(1, outlined), (9, outlined)], tool="import")
     assert work.revision == before
     assert not work.frame(1).history.is_edited
-    work.commit_all({1: outlined, 3: outlined}, tool="import")
+    work.commit_all([(1, outlined), (3, outlined)], tool="import")
     assert [frame.history.is_edited for frame in work.frames] == [True, False, True]
     assert_same_hull(work, from_scratch(work))
     assert [edit.tool for edit in work.journal] == ["import", "import"]

@@ -313,14 +313,6 @@ def test_a_label_that_nobody_can_read_is_refused(page, label) -> None:
     assert "A part's label has 1 to 40 printable characters" in refused.json()["detail"]
 
 
-def test_a_label_is_kept_and_listed(page) -> None:
-    shown = put(page, 1, outline(page, 1, component=" solar  panel ")).json()["silhouette"]
-    assert shown["component"] == "solar panel"
-    assert state(page)["frames_info"][0]["component"] == "solar panel"
-    undo(page, 1)
-    assert state(page)["frames_info"][0]["component"] == "target"
-
-
 def test_a_reprojection_tells_by_how_much_it_differs_outside_the_shadow(page) -> None:
     before = page.get("/api/frames/2/reprojection").json()
     assert before["overlap"] > 0.8

@@ -30,6 +30,8 @@ def snapshot_of(analysis: Analysis) -> Snapshot:
         records=records,
         hull=analysis.hull,
         surface=analysis.surface,
+        parts=analysis.parts,
+        outlined=analysis.components,
     )
 
 
@@ -97,15 +99,27 @@ def test_uncarved_space_that_nobody_wants_any_more_is_not_shown(viewport) -> Non
     assert not viewport._uncarved.mesh.visible
 
 
-def test_the_hull_has_the_colour_of_the_one_component_that_its_outlines_show(viewport) -> None:
+def test_parts_show_in_their_colours_within_a_hull_that_lets_them_through(viewport) -> None:
     analysis = analysis_of(2)
     viewport.show(snapshot_of(analysis))
-    assert viewport._hull.mesh.color == COMPONENT_COLOURS[0]
-    for number in (1, 2):
-        outline = replace(analysis.frame(number).silhouette, component="panel")
-        analysis.commit(number, outline, tool="name", base_revision=0)
+    assert viewport._hull.mesh.opacity is None
+    whole = analysis.frame(1).silhouette
+    for label in ("panel", "boom"):
+        analysis.commit(1, replace(whole, component=label), tool="lasso", base_revision=0)
     viewport.show(snapshot_of(analysis))
-    assert viewport._hull.mesh.color == COMPONENT_COLOURS[1]
+    nodes = viewport._parts._nodes
+    assert viewport._hull.mesh.color == COMPONENT_COLOURS[0]
+    assert viewport._hull.mesh.opacity < 1
+    assert nodes["panel"].mesh.color == COMPONENT_COLOURS[1]
+    assert nodes["boom"].mesh.color == COMPONENT_COLOURS[2]
+    assert len(nodes["panel"].mesh.vertices) == len(analysis.parts[1].surface.vertices_m)
+    analysis.delete_part("panel")
+    viewport.show(snapshot_of(analysis))
+    assert not nodes["panel"].mesh.visible
+    assert nodes["boom"].mesh.color == COMPONENT_COLOURS[2]
+    analysis.delete_part("boom")
+    viewport.show(snapshot_of(analysis))
+    assert viewport._hull.mesh.opacity is None
 
 
 def test_a_reference_stands_where_its_mesh_does() -> None:

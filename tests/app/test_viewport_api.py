@@ -1,13 +1,7 @@
-import time
-
 import httpx
 import pytest
 
 from app.layers import FIRST_LAYERS
-from app.playback import Playback
-from tests.app.running import running
-from tests.app.synthetic import SETTINGS
-from tests.app.synthetic import source as synthetic_source
 
 CAMERA = {
     "position": [40.0, 1.0, -3.0],
@@ -81,35 +75,3 @@ def test_a_named_view_is_the_same_client_at_another_address(client: httpx.Client
     assert named.text == plain.text
     policy = "Content-Security-Policy"
     assert named.headers[policy] == plain.headers[policy]
-
-
-def test_the_hulls_colour_is_that_of_the_one_component_its_outlines_show() -> None:
-    with (
-        running(synthetic_source(2), SETTINGS, Playback(speed_hz=None)) as address,
-        httpx.Client(base_url=address, trust_env=False) as client,
-    ):
-        for number in (1, 2):
-            frame = wait_for_frame(client, number)
-            outline = frame["silhouette"]
-            body = {
-                "rings": outline["rings"],
-                "claim": outline["claim"],
-                "component": "panel",
-                "tool": "name",
-                "base_revision": outline["revision"],
-            }
-            client.put(f"/api/frames/{number}/silhouette", json=body).raise_for_status()
-        choices = client.get("/api/viewport").json()
-        panel = {"label": "panel", "colour": "#e69f00"}
-        assert choices["components"] == [{"label": "target", "colour": "#a8b8cc"}, panel]
-        assert choices["layers"][0]["colour"] == panel["colour"]
-        assert client.get("/api/state").json()["frames_info"][0]["component"] == "panel"
-
-
-def wait_for_frame(client: httpx.Client, number: int) -> dict:
-    for _ in range(500):
-        answer = client.get(f"/api/frames/{number}")
-        if answer.status_code == 200:
-            return answer.json()
-        time.sleep(0.02)
-    raise AssertionError(f"frame {number} does not come")

@@ -1,5 +1,6 @@
 import json
 import zipfile
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,10 @@ from core.formats import archive
 from core.formats.annotation import frame_number
 from core.formats.annotations import read_annotations
 from core.formats.archive import packed, unpacked
-from core.formats.masks import mask_png
+from core.formats.coco import coco_json
+from core.formats.labelme import labelme_zip
+from core.formats.masks import mask_png, masks_zip
+from core.silhouettes.silhouette import Silhouette
 
 MASK = mask_png(np.ones((4, 4), dtype=bool))
 
@@ -25,6 +29,27 @@ def test_frames_are_told_by_the_last_number_in_the_name(name, number) -> None:
 def test_names_without_a_number_are_refused(name) -> None:
     with pytest.raises(ValueError, match="number of its frame"):
         frame_number(name)
+
+
+@pytest.mark.parametrize("write", [coco_json, labelme_zip, masks_zip])
+def test_the_parts_of_a_frame_come_back_beside_the_target(write) -> None:
+    square = np.array([[1.0, 1.0], [1.0, 3.0], [3.0, 3.0], [3.0, 1.0]])
+    labels = ["target", "Solar panel/2 %", "knife"]
+    outlines = [
+        (number, Silhouette(rings=(square + n,), image_shape=(9, 9), claim=claim, component=label))
+        for number in (7, 12)
+        for n, (label, claim) in enumerate(
+            zip(labels, ["lit side", *2 * ["complete"]], strict=True)
+        )
+    ]
+    found = read_annotations(write(outlines), "file")
+    known = {(each.number, each.component or "target"): each for each in found}
+    assert len(found) == len(known) == 6
+    for number, silhouette in outlines:
+        each = known[number, silhouette.component]
+        again = replace(silhouette, rings=each.rings)
+        assert np.array_equal(again.mask(), silhouette.mask())
+        assert each.is_mask or each.claim == silhouette.claim
 
 
 def test_images_beside_labelme_files_are_not_taken_for_masks() -> None:

@@ -79,6 +79,19 @@ def test_images_without_annotations_are_left_alone_unless_they_show_no_target() 
     assert [each.number for each in read_coco(content)] == [2]
 
 
+def test_categories_are_parts_only_in_a_file_that_tells_them_from_the_target() -> None:
+    empty = Silhouette(rings=(), image_shape=SHAPE, claim="complete")
+    content = json.loads(coco_json([(1, empty), (1, square(component="panel"))]))
+    assert {each.component: len(each.rings) for each in read_coco(content)} == {
+        "panel": 1,
+        "target": 0,
+    }
+    content["categories"][0]["name"] = "station"
+    (all_of_it,) = read_coco(content)
+    assert all_of_it.component is None
+    assert len(all_of_it.rings) == 1
+
+
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [

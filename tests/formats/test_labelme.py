@@ -41,16 +41,23 @@ def test_a_file_reads_as_labelme_has_it() -> None:
 
 def test_a_file_without_shapes_is_left_out_unless_it_says_that_there_is_no_target() -> None:
     content = parsed(Silhouette(rings=(), image_shape=SHAPE, claim="lit side"))
-    assert read_labelme(content, "frame-3.json").rings == ()
+    (empty,) = read_labelme(content, "frame-3.json")
+    assert empty.rings == ()
     content["flags"] = {}
-    assert read_labelme(content, "frame-3.json") is None
+    assert read_labelme(content, "frame-3.json") == ()
 
 
-def test_shapes_with_different_labels_have_no_common_component() -> None:
+def test_labels_are_parts_only_in_a_file_that_tells_them_from_the_target() -> None:
     content = parsed(Silhouette(rings=(SQUARE,), image_shape=SHAPE, claim="lit side"))
-    assert read_labelme(content, "3.json").component == "target"
     content["shapes"].append({**content["shapes"][0], "label": "panel"})
-    assert read_labelme(content, "3.json").component is None
+    whole, panel = read_labelme(content, "3.json")
+    assert (whole.component, whole.claim) == ("target", "lit side")
+    assert (panel.component, panel.claim) == ("panel", None)
+    del content["radarhull"]
+    assert [each.component for each in read_labelme(content, "3.json")] == ["target", "panel"]
+    content["shapes"][0]["label"] = "body"
+    (all_of_it,) = read_labelme(content, "3.json")
+    assert all_of_it.component is None
 
 
 @pytest.mark.parametrize("kind", ["circle", "rectangle", None, 7])
