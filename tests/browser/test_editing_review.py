@@ -1,6 +1,6 @@
-import re
-
 """Reviewing frames by keys, and carving by other settings, in a real browser."""
+
+import re
 
 from playwright.sync_api import expect
 
