@@ -234,14 +234,18 @@ export class Measurements {
 
   #offerPairs({ items }) {
     const names = items.map(({ name }) => name);
-    for (const [index, id] of ["measure-first", "measure-second"].entries()) {
-      const select = part(id);
-      const { value } = select;
-      select.disabled = names.length === 0;
-      const known = [...select.options].map((option) => option.value);
-      if (known.join("\n") === names.join("\n")) continue;
-      select.replaceChildren(...names.map((name) => new Option(name, name)));
-      select.value = names.includes(value) ? value : names[Math.min(index, names.length - 1)] ?? "";
+    const selects = ["measure-first", "measure-second"].map(part);
+    const known = [...selects[0].options].map((option) => option.value);
+    if (known.join("\n") !== names.join("\n")) {
+      for (const select of selects) {
+        const { value } = select;
+        select.disabled = names.length === 0;
+        select.replaceChildren(...names.map((name) => new Option(name, name)));
+        select.value = names.includes(value) ? value : names[0] ?? "";
+      }
+      // Of one and the same nothing is computed.
+      const other = names.find((name) => name !== selects[0].value);
+      if (selects[0].value === selects[1].value && other) selects[1].value = other;
     }
     for (const button of document.querySelectorAll("[data-pair]")) button.disabled = names.length === 0;
   }
