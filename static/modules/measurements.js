@@ -228,7 +228,7 @@ export class Measurements {
     select.hidden = frames.length < 2;
     if (!frames.includes(this.#frame)) this.#frame = "target";
     if (select.children.length === frames.length) return;
-    select.replaceChildren(...frames.map((name) => new Option(name === "target" ? "target frame" : name, name)));
+    select.replaceChildren(...frames.map((name) => new Option(name, name)));
     select.value = this.#frame;
   }
 
