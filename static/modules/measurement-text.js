@@ -71,7 +71,7 @@ export function detailRows(item, frame) {
 function vectorText(item, frame) {
   const found = { target: item.direction, RTN: item.rtn, TEME: item.teme }[frame];
   if (!found) return "not known in this frame";
-  const epoch = frame === "TEME" ? ` at ${item.epoch_utc.replace("T", " ").replace(/(\.\d)?\d*Z$/, "$1 UTC")}` : "";
+  const epoch = frame === "TEME" ? ` at ${item.epoch_utc.slice(0, 19).replace("T", " ")} UTC` : "";
   return `${found.map((part) => fixed(part, 3)).join(", ")}${epoch}${item.is_undirected ? ", undirected" : ""}`;
 }
 

@@ -86,6 +86,8 @@ def test_the_list_is_renamed_hidden_deleted_and_taken_back_where_it_stands(editi
     span.locator(".item-name").click()
     expect(span.locator(".facts")).to_contain_text("undirected")
     expect(span.locator(".facts")).to_contain_text("constrain it well")
+    pane = page.locator("#pane-measurements")
+    assert pane.evaluate("(pane) => pane.scrollWidth <= pane.clientWidth")
     span.locator(".item-name").press("F2")
     page.keyboard.type("l₂")
     page.keyboard.press("Enter")
