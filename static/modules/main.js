@@ -10,6 +10,7 @@ import { FramePanel } from "./frame-panel.js";
 import { showHull } from "./hull-view.js";
 import { resizablePanes } from "./panes.js";
 import { Loading } from "./loading.js";
+import { Measurements } from "./measurements.js";
 import { Parts } from "./parts.js";
 import { showParts } from "./parts-view.js";
 import { Proposals } from "./proposals.js";
@@ -47,6 +48,7 @@ const panel = new FramePanel(showEditing, complain, showFrame);
 const { session, view, scene } = panel;
 const rightPane = new RightPane({ go: showFrame });
 const keyPoints = new KeyPoints({ redraw: () => panel.redraw(), complain, go: showFrame, open: () => tabs.open("tools") });
+const measurements = new Measurements({ open: () => tabs.open("measurements") });
 const editor = new Editor(part("frame-canvas"), view, session, scene, {
   redraw: () => panel.redraw(),
   complain,
@@ -220,6 +222,7 @@ function showState(next) {
   exporting.update(state);
   carving.update(state);
   rightPane.update(state);
+  measurements.update(state);
   review.update(state);
   transport.update(state);
   timeline.update(state);
@@ -434,6 +437,7 @@ bindShortcuts(
     ghost: () => panel.toggleLayer("ghost"),
     overlay: () => panel.toggleLayer("hull"),
     shadow: () => panel.toggleLayer("shadow"),
+    measure: () => measurements.openMenu(),
     sheet: openSheet,
   },
   (isHidden) => {

@@ -56,6 +56,9 @@ const GROUPS = [
     ["shadow", "D", ["d"], "What lies in the dark behind a lit side"],
     [null, "H held", [], "Hide all that lies over the picture"],
   ]],
+  ["Measurements", [
+    ["measure", "N", ["n"], "Add a measurement that needs no pick"],
+  ]],
   ["Playback and space", [
     [null, "Space", [], "Play or pause"],
     [null, "→", [], "Next frame, or step"],
