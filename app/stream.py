@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from typing import Any
 
 from app.idle_work import IdleWork, Settled
 from app.observers import Observer, Observers
@@ -72,6 +73,8 @@ class LiveStream:
             settings=self._analysis.settings,
         )
         self._idle_work = IdleWork(self)
+        self.beside: dict[str, Callable[[], Any]] = {}
+        """What else the state tells, by its name there: each is asked anew every time."""
 
     @property
     def changed(self) -> threading.Condition:

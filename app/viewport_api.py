@@ -13,6 +13,7 @@ from app.camera import VIEWS, Camera
 from app.layers import (
     FIRST_LAYERS,
     LAYERS,
+    REFERENCE_LAYERS,
     Colour,
     Layer,
     component_colours,
@@ -69,7 +70,9 @@ def read_choices(stream: Stream, pages: Pages) -> dict[str, Any]:
     labels = {record.silhouette.component for record in stream.snapshot.records}
     colours = component_colours(labels)
     whole = colours[hull_component(labels)]
-    offered = [layer for layer in LAYERS if layer.name != "reference" or pages.has_reference]
+    offered = [
+        layer for layer in LAYERS if layer.name not in REFERENCE_LAYERS or pages.has_reference
+    ]
     return {
         "layers": [
             _layer_facts(replace(layer, colour=whole) if layer.name == "hull" else layer)
