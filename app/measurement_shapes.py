@@ -2,18 +2,18 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from app.dimension_lines import step_aside_m
 from app.layers import ATTITUDE_COLOUR, LENGTH_COLOUR, SECTION_COLOUR, STALE_COLOUR, Colour
+from app.measuring import Item
 from app.picking import hull_size_m
 from core.arrays import Floats
 from core.hull.closed_mesh import Surface
 from core.measurement import specs
 from core.measurement.parts import surface_of_faces
-from core.measurement.results import Lost, Measurement
+from core.measurement.results import Measurement
 
 BALL_SHARE = 0.007
 SHAFT_SHARE = 0.003
@@ -85,29 +85,12 @@ class ShownHull:
     is_preview: bool = False
 
 
-class Item(Protocol):
-    """A measurement on the desk."""
-
-    @property
-    def spec(self) -> specs.Spec:
-        """What is measured."""
-
-    @property
-    def is_hidden(self) -> bool:
-        """Whether it is not to be drawn."""
-
-    @property
-    def result(self) -> Measurement | Lost | None:
-        """What was found, None before it was looked for."""
-
-
-def shapes_of(item: Item, hull: ShownHull, words: str | None = None) -> dict[str, Shape]:
+def shapes_of(item: Item, hull: ShownHull) -> dict[str, Shape]:
     """Return what to draw of a measurement, by names; nothing where it is hidden or lost.
 
     Args:
         item: the measurement.
         hull: on show; what belongs to another revision is grey, and its label says which.
-        words: instead of its value, for what must not be read as a plain number.
     """
     found = item.result
     if item.is_hidden or not isinstance(found, Measurement) or hull.surface.is_empty:
@@ -116,7 +99,9 @@ def shapes_of(item: Item, hull: ShownHull, words: str | None = None) -> dict[str
     if make is None:
         return {}
     job = _Job(found=found, hull=hull, size_m=hull_size_m(hull.surface))
-    text = f"{found.name} {value_text(found) if words is None else words}"
+    # A length that no view constrains must not be read as a plain number.
+    is_number = item.observability != "unobserved"
+    text = f"{found.name} {value_text(found) if is_number else 'unobserved'}"
     shapes, place_m = make(job)
     return {**shapes, "label": Label(text=text + job.stamp, place_m=place_m)}
 

@@ -156,9 +156,10 @@ _ENOUGH: Mapping[Kind, int | None] = {
 }
 
 
+@lru_cache(maxsize=4)
 def hull_size_m(surface: Surface) -> float:
     """Return the longest side of the box around a surface that is not empty."""
-    return float(np.ptp(surface.vertices_m, axis=0).max())
+    return max(float(np.ptp(column)) for column in surface.vertices_m.T)
 
 
 def pick_on(surface: Surface | None, ray: Ray, snap: Snap) -> Pick:
@@ -221,6 +222,7 @@ _PICKS: Mapping[Snap, Callable[[Surface, Floats, int], Pick]] = {
 
 def prepare(surface: Surface) -> None:
     """Find the parts of a surface and their axes, which a click on a new hull would wait for."""
+    hull_size_m(surface)
     labels, sizes = np.unique(part_labels(surface), return_counts=True)
     for label in labels[np.argsort(-sizes)][:MOST_PREPARED]:
         with suppress(ValueError):  # it encloses nothing

@@ -13,12 +13,15 @@ from fastapi import FastAPI
 
 from app.compilation import compiling
 from app.gate import LOOPBACK_NAMES
+from app.measuring import MeasurementDesk
 from app.playback import DEFAULT_SPEED_HZ, Playback
 from app.source import Source
 from app.stream import LiveStream, SurfaceOf
 from app.uncarved import UncarvedWatch
 from app.viewport import Viewport
+from app.viewport_measurements import MeasurementDrawing
 from app.viewport_pages import ViewportPages
+from app.viewport_picking import Pickers
 from app.viser_server import PrivateViserServer
 from app.web import create_app
 from core.hull.volume import VoteVolume
@@ -93,6 +96,7 @@ def workstation(
     viser_server = PrivateViserServer()
     viewport = Viewport(viser_server, reference=reference)
     uncarved = UncarvedWatch(lambda: stream.volume, viewport.show_uncarved)
+    desk = MeasurementDesk(stream)
 
     def want(layers: frozenset[str]) -> None:
         viewport.want(layers)
@@ -100,15 +104,32 @@ def workstation(
 
     pages = ViewportPages(viser_server, want, has_reference=reference is not None)
     try:
-        app = create_app(stream, viser_server.address, pages)
+        app = create_app(stream, viser_server.address, pages, desk)
         stream.observe(viewport.show)
         stream.observe(uncarved.note)
+        stream.observe(desk.note)
+        _add_picking(app, stream, pages, desk)
+        drawing = MeasurementDrawing(viser_server, desk)
+        stream.observe(drawing.note)
+        desk.observe(drawing.show)
         stream.start()
+        desk.start()
         yield app
     finally:
+        desk.stop()
         uncarved.stop()
         stream.stop()
         viser_server.stop()
+
+
+def _add_picking(
+    app: FastAPI, stream: LiveStream, pages: ViewportPages, desk: MeasurementDesk
+) -> None:
+    """Let pages pick on the hull, and tell in the state what they are about to measure."""
+    pickers = Pickers(pages, lambda: stream.snapshot.surface, desk, app.state.changes.notify)
+    app.state.pickers = pickers
+    stream.also_told["picking"] = pickers.facts
+    stream.observe(pickers.note)
 
 
 class WorkstationServer(uvicorn.Server):

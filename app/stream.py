@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import Any
 
 from app.idle_work import IdleWork, Settled
 from app.observers import Observer, Observers
@@ -52,6 +51,8 @@ class LiveStream:
             ValueError: a grid too large.
         """
         self.source = source
+        self.also_told: dict[str, Callable[[], object]] = {}
+        """What others tell beside the snapshot, as JSON values, by its name in the state."""
         self._playback = playback or Playback()
         self._surface_of = surface_of
         self._analysis = Analysis(settings, surface_of=surface_of)
@@ -73,8 +74,6 @@ class LiveStream:
             settings=self._analysis.settings,
         )
         self._idle_work = IdleWork(self)
-        self.beside: dict[str, Callable[[], Any]] = {}
-        """What else the state tells, by its name there: each is asked anew every time."""
 
     @property
     def changed(self) -> threading.Condition:

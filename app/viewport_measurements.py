@@ -1,9 +1,8 @@
 """Measurements in the viewport: drawn as they are measured, their ends draggable on the hull."""
 
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Protocol
 
 import numpy as np
 import viser
@@ -12,7 +11,6 @@ from viser import SceneNodeDragEvent
 from app.measurement_shapes import (
     Arrows,
     End,
-    Item,
     Label,
     Lines,
     Shape,
@@ -20,6 +18,7 @@ from app.measurement_shapes import (
     Tint,
     shapes_of,
 )
+from app.measuring import Item, MeasurementDesk
 from app.picking import surface_anchor
 from app.snapshot import Snapshot
 from core.arrays import Floats
@@ -35,17 +34,6 @@ Handle = (
     | viser.LabelHandle
     | viser.MeshHandle
 )
-
-
-class Desk(Protocol):
-    """Where the measurements lie."""
-
-    @property
-    def items(self) -> Sequence[Item]:
-        """What is on it."""
-
-    def replace(self, name: str, spec: Spec) -> None:
-        """Measure something else under a name."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -64,19 +52,16 @@ class MeasurementDrawing:
     def __init__(
         self,
         server: viser.ViserServer,
-        desk: Desk,
-        words_of: Callable[[Item], str | None] = lambda _: None,
+        desk: MeasurementDesk,
     ) -> None:
         """Show nothing yet.
 
         Args:
             server: whose scene it is.
             desk: whose measurements are drawn, and take the ends that are dragged.
-            words_of: gives what stands in place of a value that is no plain number, or None.
         """
         self._server = server
         self._desk = desk
-        self._words_of = words_of
         # Measurements come from the desk's thread, hulls from the live loop, drags from viser's.
         self._lock = threading.Lock()
         self._hull: ShownHull | None = None
@@ -101,9 +86,7 @@ class MeasurementDrawing:
             ):
                 return
             else:
-                self._hull = replace(
-                    self._hull, revision=hull.revision, is_preview=hull.is_preview
-                )
+                self._hull = replace(self._hull, revision=hull.revision, is_preview=hull.is_preview)
             self._draw(self._desk.items)
 
     def show(self, items: Sequence[Item]) -> None:
@@ -133,7 +116,7 @@ class MeasurementDrawing:
         for item in items:
             number = self._number(item.spec.name)
             if self._hull is not None:
-                shapes = shapes_of(item, self._hull, self._words_of(item))
+                shapes = shapes_of(item, self._hull)
                 wanted |= {f"/measurements/{number}-{part}": s for part, s in shapes.items()}
         return wanted
 
@@ -168,9 +151,7 @@ class MeasurementDrawing:
                 head_length=8 * shape.radius_m,
             )
         if isinstance(shape, Label):
-            return scene.add_label(
-                node, shape.text, position=shape.place_m, anchor="bottom-center"
-            )
+            return scene.add_label(node, shape.text, position=shape.place_m, anchor="bottom-center")
         if isinstance(shape, Tint):
             return scene.add_mesh_simple(
                 node,

@@ -3,13 +3,14 @@
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
 import viser
 from viser import SceneClickEvent
 
 from app.layers import PICK_COLOUR
+from app.measuring import MeasurementDesk
 from app.picking import (
     STEMS,
     Kind,
@@ -20,13 +21,14 @@ from app.picking import (
     hint_of,
     hull_size_m,
     pick_on,
+    prepare,
     spec_of,
 )
+from app.snapshot import Snapshot
 from app.viewport_pages import ViewportPages
 from core.hull.closed_mesh import Surface
 from core.measurement.measuring import measure
 from core.measurement.results import Lost
-from core.measurement.specs import Spec
 
 BALL_SHARE = 0.009
 """Radius of what marks a picked point, in sizes of the hull."""
@@ -37,28 +39,6 @@ _SNAP_OF_KEYS: tuple[tuple[Literal["shift", "cmd/ctrl"] | None, Snap | None], ..
     ("cmd/ctrl", "part end"),
 )
 """What held keys snap a click to, None for what the page has chosen."""
-
-
-class Named(Protocol):
-    """Whatever has a spec, such as an item of the desk."""
-
-    @property
-    def spec(self) -> Spec:
-        """What is measured."""
-
-
-class Desk(Protocol):
-    """Where complete measurements go."""
-
-    @property
-    def items(self) -> tuple[Named, ...]:
-        """What is on it."""
-
-    def add(self, spec: Spec) -> None:
-        """Put a measurement on it."""
-
-    def free_name(self, stem: str) -> str:
-        """Return a name that nothing on it has."""
 
 
 @dataclass(slots=True, eq=False)
@@ -79,7 +59,7 @@ class Pickers:
         self,
         pages: ViewportPages,
         surface: Callable[[], Surface | None],
-        desk: Desk,
+        desk: MeasurementDesk,
         changed: Callable[[], None] = lambda: None,
     ) -> None:
         """Let nobody pick yet.
@@ -96,6 +76,7 @@ class Pickers:
         # Clicks come from viser's threads, orders from the page's requests.
         self._lock = threading.RLock()
         self._pages: dict[str, _Page] = {}
+        self._prepared: Surface | None = None
         pages.listen(self._follow_client)
 
     def facts(self) -> dict[str, Any]:
@@ -114,8 +95,23 @@ class Pickers:
                 if (picking := page.picking) is not None
             }
 
+    def note(self, snapshot: Snapshot) -> None:
+        """Take notice of the hull on show, and make it ready for clicks while somebody picks."""
+        with self._lock:
+            is_new = snapshot.surface is not self._prepared
+        if is_new and self.facts():
+            self._prepare()
+
+    def _prepare(self) -> None:
+        surface = self._surface()
+        with self._lock:
+            self._prepared = surface
+        if surface is not None and not surface.is_empty:
+            threading.Thread(target=prepare, args=(surface,), daemon=True).start()
+
     def begin(self, name: str, kind: Kind, snap: Snap) -> None:
         """Let a page pick; what it has picked for the same kind stays."""
+        self._prepare()
         with self._lock:
             before = self._page(name).picking
             if before is not None and before.kind == kind:
@@ -261,5 +257,3 @@ class Pickers:
                     )
         page.drawn = len(picks)
         page.client.flush()
-
-

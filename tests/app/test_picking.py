@@ -77,7 +77,7 @@ def test_a_parts_end_is_the_one_that_the_click_is_nearest_to(at, end):
 @given(x=st.floats(-1.9, 1.9), y=st.floats(-0.9, 0.9), turn=TURNS, shift=SHIFTS)
 @settings(max_examples=20)
 def test_a_picks_place_is_where_its_anchor_is_found(snap, x, y, turn, shift):
-    body = moved(joined(box((4.0, 2.0, 1.0)), box(centre=(9, 0, 0))), turn, shift)
+    body = moved(joined(box((4.0, 2.0, 1.0), fineness=3), box(centre=(9, 0, 0))), turn, shift)
     pick = pick_on(body, ray(turn.apply([x, y, 9.0]) + shift, turn.apply(DOWN)), snap)
     np.testing.assert_allclose(resolve(pick.anchor, body), pick.place_m, atol=1e-9)
 

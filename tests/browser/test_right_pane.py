@@ -6,11 +6,11 @@ from itertools import pairwise
 
 import pytest
 from playwright.sync_api import Locator, Page, Route, expect
+from tests.browser.test_editing import AXE, serious_violations
 
 from app import idle_work
 from app.source import Source
 from tests.app.synthetic import frames, source
-from tests.browser.test_editing import AXE, serious_violations
 
 COURSE = {
     "passes": [
