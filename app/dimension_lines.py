@@ -22,7 +22,7 @@ def step_aside_m(surface: Surface, start_m: Floats, end_m: Floats) -> Floats:
     It goes the shortest way of `DIRECTIONS` that clears the hull between its ends.
 
     Args:
-        surface: of the hull.
+        surface: of the hull, of faces that are small against the line.
         start_m: (3,) of the line, target frame.
         end_m: (3,) of the line, another point.
     """
