@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -9,18 +10,22 @@ from app.dimension_lines import step_aside_m
 from app.layers import ATTITUDE_COLOUR, LENGTH_COLOUR, SECTION_COLOUR, STALE_COLOUR, Colour
 from app.measuring import Item
 from app.picking import hull_size_m
+from app.surface_node import lifted
 from core.arrays import Floats
 from core.hull.closed_mesh import Surface
 from core.measurement import specs
 from core.measurement.parts import surface_of_faces
 from core.measurement.results import Measurement
 
-BALL_SHARE = 0.007
+BALL_SHARE = 0.01
 SHAFT_SHARE = 0.003
 STICK_OUT_SHARE = 0.1
 LIFT_SHARE = 0.002
 """Radius of an end, radius of an arrow, how far an axis sticks out of the hull, and how far tinted
 faces are lifted off it, in sizes of the hull."""
+
+
+LabelAnchor = Literal["bottom-center", "center-left", "top-right"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -53,10 +58,11 @@ class Arrows:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Label:
-    """Text at a place (3,)."""
+    """Text at a place (3,), and which point of its frame lies there."""
 
     text: str
     place_m: Floats
+    anchor: LabelAnchor = "bottom-center"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -103,7 +109,9 @@ def shapes_of(item: Item, hull: ShownHull) -> dict[str, Shape]:
     is_number = item.observability != "unobserved"
     text = f"{found.name} {value_text(found) if is_number else 'unobserved'}"
     shapes, place_m = make(job)
-    return {**shapes, "label": Label(text=text + job.stamp, place_m=place_m)}
+    # Where a length, an axis and a section meet, their labels lie side by side.
+    anchor = _ANCHORS.get(make, "bottom-center")
+    return {**shapes, "label": Label(text=text + job.stamp, place_m=place_m, anchor=anchor)}
 
 
 def value_text(found: Measurement) -> str:
@@ -229,20 +237,8 @@ def _support(job: _Job) -> dict[str, Shape]:
     if support is None or job.is_stale or len(support) in (0, len(surface.faces)):
         return {}
     faces = surface_of_faces(surface, support)
-    lifted = faces.vertices_m + LIFT_SHARE * job.size_m * _vertex_normals(faces)
-    tinted = Surface(vertices_m=lifted, faces=faces.faces)
+    tinted = lifted(faces, LIFT_SHARE * job.size_m)
     return {"support": Tint(surface=tinted, colour=ATTITUDE_COLOUR)}
-
-
-def _vertex_normals(surface: Surface) -> Floats:
-    a, b, c = (surface.vertices_m[surface.faces[:, corner]] for corner in range(3))
-    across = np.cross(b - a, c - a)
-    normals = np.zeros_like(surface.vertices_m)
-    for corner in range(3):
-        np.add.at(normals, surface.faces[:, corner], across)
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    unit: Floats = normals / np.where(lengths > 0, lengths, 1.0)
-    return unit
 
 
 _SHAPES: Mapping[type, Callable[[_Job], _Drawing]] = {
@@ -260,3 +256,10 @@ _SHAPES: Mapping[type, Callable[[_Job], _Drawing]] = {
     specs.Area: _area,
 }
 """What can be drawn; volumes, angles and scale factors are told by the table alone."""
+
+_ANCHORS: Mapping[Callable[[_Job], _Drawing], LabelAnchor] = {
+    _normal: "center-left",
+    _axis: "center-left",
+    _body_axes: "center-left",
+    _section: "top-right",
+}

@@ -7,7 +7,6 @@ import webbrowser
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-import trimesh
 import uvicorn
 from fastapi import FastAPI
 
@@ -15,6 +14,7 @@ from app.compilation import compiling
 from app.gate import LOOPBACK_NAMES
 from app.measuring import MeasurementDesk
 from app.playback import DEFAULT_SPEED_HZ, Playback
+from app.reference import Reference, ReferenceDesk
 from app.source import Source
 from app.stream import LiveStream, SurfaceOf
 from app.uncarved import UncarvedWatch
@@ -41,7 +41,7 @@ def serve(
     open_browser: bool = False,
     settings: ReconstructionSettings | None = None,
     speed_hz: float | None = DEFAULT_SPEED_HZ,
-    reference: trimesh.Trimesh | None = None,
+    reference: Reference | None = None,
 ) -> None:
     """Show the reconstruction of `source` in a browser until SIGINT or SIGTERM.
 
@@ -54,7 +54,7 @@ def serve(
         open_browser: whether to open the page in the user's browser.
         settings: how the hull is reconstructed.
         speed_hz: frames per second to start with, None for as fast as they are computed.
-        reference: a mesh in metres of the target frame, to look at beside the hull.
+        reference: a body to look at beside the hull, and to compare it with.
 
     Raises:
         ValueError: the host is not a loopback address, the port is in use or forbidden, or the
@@ -89,12 +89,12 @@ def workstation(
     *,
     playback: Playback | None = None,
     surface_of: SurfaceOf = VoteVolume.surface,
-    reference: trimesh.Trimesh | None = None,
+    reference: Reference | None = None,
 ) -> Iterator[FastAPI]:
     """Run the live loop and the viewport, and give the application that shows them."""
     stream = LiveStream(source, settings, playback=playback, surface_of=surface_of)
     viser_server = PrivateViserServer()
-    viewport = Viewport(viser_server, reference=reference)
+    viewport = Viewport(viser_server, reference=None if reference is None else reference.surface)
     uncarved = UncarvedWatch(lambda: stream.volume, viewport.show_uncarved)
     desk = MeasurementDesk(stream)
 
@@ -109,6 +109,7 @@ def workstation(
         stream.observe(uncarved.note)
         stream.observe(desk.note)
         _add_picking(app, stream, pages, desk)
+        _add_reference(app, stream, viewport, reference)
         drawing = MeasurementDrawing(viser_server, desk)
         stream.observe(drawing.note)
         desk.observe(drawing.show)
@@ -130,6 +131,25 @@ def _add_picking(
     app.state.pickers = pickers
     stream.also_told["picking"] = pickers.facts
     stream.observe(pickers.note)
+
+
+def _add_reference(
+    app: FastAPI, stream: LiveStream, viewport: Viewport, reference: Reference | None
+) -> None:
+    """Let pages ask how the hull agrees with the reference, where there is one."""
+    app.state.reference_desk = None
+    if reference is None:
+        return
+    desk = ReferenceDesk(
+        reference.surface,
+        lambda: stream.snapshot,
+        viewport.show_distances,
+        app.state.changes.notify,
+        is_closed=reference.is_closed,
+    )
+    app.state.reference_desk = desk
+    stream.also_told["reference"] = desk.facts
+    stream.observe(desk.note)
 
 
 class WorkstationServer(uvicorn.Server):

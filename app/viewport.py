@@ -23,8 +23,9 @@ from app.layers import (
 )
 from app.picture_plane import picture_plane
 from app.pictures import SHOWN_FLOOR_DB, translucent_picture
+from app.reference import Compared
 from app.snapshot import Record, Snapshot
-from app.surface_node import SurfaceNode
+from app.surface_node import SurfaceNode, lifted
 from core.analysis.frames import AnalysedFrame
 from core.arrays import Floats
 from core.frame import Frame
@@ -41,6 +42,9 @@ SIGHT_REACH = (0.58, 0.42)
 """Where the arrow of the line of sight begins and ends, in sides of the window from the centre."""
 
 
+DISTANCE_LIFT_M = 0.02
+"""By which the coloured hull lies outside the hull, which would else shine through."""
+
 LabelAnchor = Literal["center-center", "bottom-left"]
 
 
@@ -52,9 +56,7 @@ class Viewport:
     below the node of its layer, which pages show and hide each for itself.
     """
 
-    def __init__(
-        self, server: viser.ViserServer, *, reference: trimesh.Trimesh | None = None
-    ) -> None:
+    def __init__(self, server: viser.ViserServer, *, reference: Surface | None = None) -> None:
         """Set up a scene that holds nothing but the reference, in metres of the target frame."""
         self._server = server
         # Snapshots come from the live loop, wishes for layers from pages.
@@ -77,7 +79,7 @@ class Viewport:
         )
         if reference is not None:
             node = SurfaceNode(server, "/reference/mesh", colour=REFERENCE_COLOUR, opacity=0.4)
-            node.show(Surface(vertices_m=reference.vertices, faces=reference.faces))
+            node.show(reference)
         self._picture = server.scene.add_image(
             "/picture/image",
             np.zeros((2, 2, 4), dtype=np.uint8),
@@ -119,6 +121,23 @@ class Viewport:
         """Show the space that few views have carved away."""
         with self._lock, self._server.atomic():
             self._uncarved.show(surface if "uncarved" in self._wanted else None)
+        self._server.flush()
+
+    def show_distances(self, compared: Compared | None) -> None:
+        """Show a hull in the colours of its distances from the reference, or take it off."""
+        with self._lock, self._server.atomic():
+            self._server.scene.remove_by_name("/distance/surface")
+            if compared is not None:
+                shown = lifted(compared.surface, DISTANCE_LIFT_M)
+                mesh = trimesh.Trimesh(
+                    shown.vertices_m,
+                    shown.faces,
+                    vertex_colors=compared.colours(),
+                    process=False,
+                )
+                self._server.scene.add_mesh_trimesh(
+                    "/distance/surface", mesh, cast_shadow=False, receive_shadow=False
+                )
         self._server.flush()
 
     def _resize(self, side_m: float) -> None:

@@ -151,7 +151,7 @@ class MeasurementDrawing:
                 head_length=8 * shape.radius_m,
             )
         if isinstance(shape, Label):
-            return scene.add_label(node, shape.text, position=shape.place_m, anchor="bottom-center")
+            return scene.add_label(node, shape.text, position=shape.place_m, anchor=shape.anchor)
         if isinstance(shape, Tint):
             return scene.add_mesh_simple(
                 node,
@@ -274,7 +274,7 @@ def _is_updated(handle: Handle, shape: Shape) -> bool:
         handle.points = shape.points_m.astype(np.float32)
         handle.colors = np.array(shape.colour, dtype=np.uint8)
     elif isinstance(shape, Label) and isinstance(handle, viser.LabelHandle):
-        handle.text, handle.position = shape.text, shape.place_m
+        handle.text, handle.position, handle.anchor = shape.text, shape.place_m, shape.anchor
     elif isinstance(shape, End) and isinstance(handle, viser.IcosphereHandle):
         handle.position, handle.color, handle.radius = shape.place_m, shape.colour, shape.radius_m
     else:

@@ -88,6 +88,7 @@ class Pickers:
                     "kind": picking.kind,
                     "snap": picking.snap,
                     "picked": len(picking.picks),
+                    "snaps": picking.is_at_point,
                     "complaint": picking.complaint,
                     "hint": hint_of(picking, surface),
                 }

@@ -30,6 +30,11 @@ export class SpaceView {
     this.#ready = this.#offer().catch((error) => complain(error.message));
   }
 
+  /** What the server calls this page. */
+  get name() {
+    return NAME;
+  }
+
   /** The layers on show, in the order of their buttons. */
   get layers() {
     return this.#offered.filter(({ name }) => this.#layers?.has(name)).map(({ name }) => name);
@@ -133,6 +138,13 @@ export class SpaceView {
       this.#sendLayers();
     });
     return button;
+  }
+
+  /** Put a layer on show, or take it off. */
+  showLayer(name, isOn) {
+    if (isOn) this.#layers?.add(name);
+    else this.#layers?.delete(name);
+    return this.#sendLayers();
   }
 
   async #sendLayers() {

@@ -11,6 +11,7 @@ from app.viewport import Viewport
 from app.viser_server import PrivateViserServer
 from core.analysis.analysis import Analysis
 from tests.app.synthetic import SETTINGS, frames
+from tests.measurement.bodies import surface_of
 
 
 @pytest.fixture
@@ -111,7 +112,7 @@ def test_the_hull_has_the_colour_of_the_one_component_that_its_outlines_show(vie
 def test_a_reference_stands_where_its_mesh_does() -> None:
     server = PrivateViserServer()
     box = trimesh.creation.box((3.0, 2.0, 1.0))
-    Viewport(server, reference=box)
+    Viewport(server, reference=surface_of(box))
     (mesh,) = [
         m
         for m in server._websock_server._broadcast_buffer.message_from_id.values()

@@ -62,6 +62,7 @@ def test_two_clicks_make_a_length_and_the_page_goes_on_measuring(pickers, desk, 
         "kind": "length",
         "snap": "surface",
         "picked": 0,
+        "snaps": True,
         "complaint": "",
         "hint": "Length: click the first end",
     }

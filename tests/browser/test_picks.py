@@ -1,0 +1,138 @@
+"""Measuring by clicks in the real view in space."""
+
+import re
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+from playwright.sync_api import Page, expect
+
+from app.camera import FAR_FIELD_OF_VIEW_RAD
+from tests.app.synthetic import source
+from tests.browser.test_space import light, until
+
+
+class Space:
+    """A page whose view looks down on the hull from far away, and its server's state."""
+
+    def __init__(self, page: Page, address: str) -> None:
+        self.page = page
+        self.client = httpx.Client(base_url=address, trust_env=False)
+        self.box = page.locator("#viewport").bounding_box()
+        name = re.search(r"/viewport/([\w-]+)/", page.locator("#viewport").get_attribute("src"))[1]
+        answer = self.client.put(f"/api/viewport/{name}/view", json={"view": "-z"}).json()
+        self.camera_m = np.array(answer["position"])
+
+    def at(self, x_m: float, y_m: float, z_m: float = 0.0) -> tuple[float, float]:
+        """Where a point of the target frame lies in the window; x is up, y to the right."""
+        distance_m = np.linalg.norm(self.camera_m) + z_m
+        per_m = self.box["height"] / (2 * distance_m * np.tan(FAR_FIELD_OF_VIEW_RAD / 2))
+        return (
+            self.box["x"] + self.box["width"] / 2 + y_m * per_m,
+            self.box["y"] + self.box["height"] / 2 - x_m * per_m,
+        )
+
+    def click(self, x_m: float, y_m: float) -> None:
+        self.page.mouse.click(*self.at(x_m, y_m))
+
+    def state(self) -> dict[str, Any]:
+        return self.client.get("/api/state").json()
+
+    def picked(self, count: int) -> None:
+        expect(self.page.locator("#pick-bar")).to_have_attribute("data-picked", str(count))
+
+
+@pytest.fixture
+def space(visit):
+    visited = visit(source(6), playing=True, viewport=True)
+    page = visited.page
+    page.set_viewport_size({"width": 1100, "height": 640})
+    expect(page.locator("#status")).to_have_text("All 6 frames received")
+    until(page, lambda image: light(image).mean() > 0.02)
+    space = Space(page, visited.address)
+    # The camera has moved once the picture has: from above the fuselage is at the middle.
+    until(page, lambda image: light(image)[95:105, 95:105].mean() > 0.9)
+    yield space
+    space.client.close()
+    assert visited.complaints == []
+
+
+def test_two_clicks_measure_a_span_whose_end_can_then_be_dragged(space: Space, visit) -> None:
+    page, bar = space.page, space.page.locator("#pick-bar")
+    page.keyboard.press("m")
+    expect(page.locator("#pick-hint")).to_have_text("Length: click the first end – Esc cancels")
+    desk = space.state
+    space.click(11.0, 11.0)
+    expect(page.locator("#pick-complaint")).to_have_text(
+        "There is no hull under the pointer; click on its surface."
+    )
+    space.click(2.2, -6.5)
+    space.picked(1)
+    expect(page.locator("#pick-complaint")).to_be_hidden()
+
+    # A drag turns the view and picks nothing; the page still waits for the second end.
+    page.mouse.move(*space.at(-9.0, -9.0))
+    page.mouse.down()
+    page.mouse.move(*space.at(-9.0, -7.0), steps=4)
+    page.mouse.move(*space.at(-9.0, -9.0), steps=4)
+    page.mouse.up()
+    space.picked(1)
+    space.click(2.2, -6.5)
+    expect(page.locator("#pick-complaint")).to_contain_text("That is the same point again")
+    space.click(2.2, 6.5)
+    space.picked(0)
+    (item,) = measured(space, 1)
+    assert item["name"] == "length 1"
+    assert item["value"] == pytest.approx(13.0, abs=0.5)
+    assert desk()["picking"]
+
+    page.keyboard.press("Escape")
+    expect(bar).to_be_hidden()
+    assert space.state()["picking"] == {}
+    space.click(2.2, 0.0)
+    assert len(space.state()["measurements"]["items"]) == 1
+
+    # An end is dragged along the hull.
+    near_m = -0.6
+    page.mouse.move(*space.at(2.2, 6.5, near_m))
+    page.wait_for_timeout(300)
+    page.mouse.down()
+    page.mouse.move(*space.at(2.2, 5.0, near_m), steps=8)
+    page.mouse.move(*space.at(2.2, 3.0, near_m), steps=8)
+    page.wait_for_timeout(200)
+    page.mouse.up()
+    for _ in range(100):
+        (item,) = measured(space, 1)
+        if item["value"] < 11.0:
+            break
+        page.wait_for_timeout(50)
+    assert item["value"] == pytest.approx(9.5, abs=0.5)
+    assert space.state()["measurements"]["can_undo"]
+
+
+def measured(space: Space, count: int) -> list[dict[str, Any]]:
+    """The rows of the table once all are measured."""
+    for _ in range(200):
+        items = space.state()["measurements"]["items"]
+        if len(items) == count and all(item["value"] is not None for item in items):
+            return items
+        space.page.wait_for_timeout(50)
+    raise AssertionError(f"there are not {count} values: {items}")
+
+
+def test_the_menu_chooses_what_is_measured_and_keys_what_a_click_snaps_to(space: Space) -> None:
+    page = space.page
+    page.get_by_role("button", name="Measure", exact=True).click()
+    page.get_by_role("button", name="Polyline").click()
+    expect(page.locator("#pick-hint")).to_contain_text("Polyline: click the first point")
+    page.get_by_role("button", name="Extreme").click()
+    expect(page.locator("#pick-hint")).to_contain_text("farthest out within 1.6 m")
+    for place in ((2.2, -6.5), (0.0, 0.0), (2.2, 6.5)):
+        space.click(*place)
+    space.picked(3)
+    page.keyboard.press("Backspace")
+    space.picked(2)
+    page.keyboard.press("Enter")
+    space.picked(0)
+    assert [item["name"] for item in space.state()["measurements"]["items"]] == ["polyline 1"]
