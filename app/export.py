@@ -1,14 +1,10 @@
-"""What the workstation hands out: the hull, the outlines and the measurements, as files."""
+"""What the workstation hands out: the hull and the outlines, as files."""
 
-import csv
-import io
-import json
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from app.facts import carving_facts, hull_facts
 from app.snapshot import Snapshot
 from app.source import Source
 from core.formats.coco import coco_json
@@ -53,54 +49,6 @@ def hull_as(suffix: str) -> Writer:
     return write
 
 
-def measurement_facts(snapshot: Snapshot, source: Source) -> dict[str, Any]:
-    """Return the hull's measurements with the revision and settings that they belong to.
-
-    Raises:
-        ValueError: no hull, or one of an outline that is not kept.
-    """
-    if snapshot.hull is None:
-        raise ValueError("There is nothing measured yet; wait for the first frame.")
-    _check_kept(snapshot)
-    return {
-        "source": source.name,
-        "carving": carving_facts(snapshot.settings),
-        "hull": hull_facts(snapshot.hull),
-    }
-
-
-def measurements_csv(snapshot: Snapshot, source: Source) -> bytes:
-    """Return a row per extent, line and volume, each with the hull that it belongs to.
-
-    What the views do not bound has no value; directions are unit vectors in the target frame.
-    """
-    facts = measurement_facts(snapshot, source)
-    hull = facts["hull"]
-    stamp = [hull["revision"], hull["threshold"], hull["views"], facts["carving"]["rule"]]
-    rows = [
-        *(
-            ["extent", each["name"], each["value_m"], "m", each["is_bounded"], *each["direction"]]
-            for each in hull["extents"]
-        ),
-        *(
-            ["line", each["name"], each["length_m"], "m", True, *each["direction"]]
-            for each in hull["lines"]
-        ),
-        ["volume", "volume", hull["volume_m3"], "m3", hull["volume_m3"] is not None, "", "", ""],
-    ]
-    text = io.StringIO()
-    writer = csv.writer(text)
-    writer.writerow(_COLUMNS)
-    writer.writerows([*row, *stamp] for row in rows)
-    return text.getvalue().encode()
-
-
-_COLUMNS = (
-    *("kind", "name", "value", "unit", "is_bounded", "direction_x", "direction_y", "direction_z"),
-    *("hull_revision", "threshold_votes", "views", "rule"),
-)
-
-
 def _check_kept(snapshot: Snapshot) -> None:
     if snapshot.hull is not None and snapshot.hull.is_preview:
         raise ValueError("The hull follows an outline that is not kept yet; keep or discard it.")
@@ -115,10 +63,6 @@ def _outlines_by(write: Callable[[Any], bytes]) -> Writer:
     return write_outlines
 
 
-def _measurements_json(snapshot: Snapshot, source: Source) -> bytes:
-    return json.dumps(measurement_facts(snapshot, source), indent=1).encode()
-
-
 EXPORTS = {
     **{
         f"hull{suffix}": Export(media_type=f"model/{kind}", write=hull_as(suffix))
@@ -129,7 +73,5 @@ EXPORTS = {
         media_type="application/zip", write=_outlines_by(labelme_zip)
     ),
     "silhouettes-masks.zip": Export(media_type="application/zip", write=_outlines_by(masks_zip)),
-    "measurements.csv": Export(media_type="text/csv; charset=utf-8", write=measurements_csv),
-    "measurements.json": Export(media_type="application/json", write=_measurements_json),
 }
-"""By the name under which the interface has them."""
+"""By the name under which the interface has them; measurements are `app.measurements_api`'s."""

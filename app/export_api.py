@@ -1,4 +1,4 @@
-"""The interface for downloads: the hull, the outlines and the measurements, as files."""
+"""The interface for downloads: the hull and the outlines, as files."""
 
 from collections.abc import Iterator
 
@@ -10,15 +10,19 @@ from app.export import EXPORTS, file_name
 
 router = APIRouter(prefix="/api/export")
 
+MEASUREMENT_FILES = ("measurements.csv", "measurements.json")
+"""To be had under the same address; `app.measurements_api` writes them."""
+
 PIECE_BYTES = 256 * 1024
 
 
 # Not a coroutine: a large hull takes its time, in a thread of its own.
 @router.get("/{what}")
 def export(what: str, stream: Stream) -> StreamingResponse:
-    """Return a file of the hull, the outlines or the measurements as they stand now."""
+    """Return a file of the hull or the outlines as they stand now."""
     if what not in EXPORTS:
-        raise HTTPException(404, f"There is no export {what}; there are {', '.join(EXPORTS)}.")
+        known = ", ".join((*EXPORTS, *MEASUREMENT_FILES))
+        raise HTTPException(404, f"There is no export {what}; there are {known}.")
     snapshot, source = stream.snapshot, stream.source
     try:
         content = EXPORTS[what].write(snapshot, source)

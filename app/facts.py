@@ -16,6 +16,7 @@ from core.geometry.track import angles_from_line_of_sight
 from core.hull.simplification import Simplified
 from core.measurement.extents import Extent
 from core.measurement.lines import LineMeasurement
+from core.measurement.observability import Grade
 from core.radar.course import PassCourse
 from core.reconstruction import ReconstructionSettings
 from core.silhouettes.extraction import ExtractionSettings
@@ -95,7 +96,7 @@ def blind_direction(record: Record) -> Floats:
 
 
 def hull_facts(hull: Hull) -> dict[str, Any]:
-    """Return a hull's numbers; what the views do not bound has none."""
+    """Return a hull's numbers; what the views do not bound or do not observe has none."""
     is_bounded = all(extent.is_bounded for extent in hull.extents)
     return {
         "revision": hull.revision,
@@ -109,7 +110,10 @@ def hull_facts(hull: Hull) -> dict[str, Any]:
         "faces": hull.face_count,
         "volume_m3": hull.volume_m3 if is_bounded else None,
         "extents": [_extent_facts(extent) for extent in hull.extents],
-        "lines": [_line_facts(line) for line in hull.lines],
+        "lines": [
+            _line_facts(line, grade)
+            for line, grade in zip(hull.lines, hull.line_grades, strict=True)
+        ],
         "unobserved": _vector(hull.unobserved),
     }
 
@@ -173,14 +177,16 @@ def _extent_facts(extent: Extent) -> dict[str, Any]:
         "name": extent.name,
         "value_m": extent.value_m if extent.is_bounded else None,
         "is_bounded": extent.is_bounded,
+        "observability": extent.observability,
         "direction": _vector(extent.direction),
     }
 
 
-def _line_facts(line: LineMeasurement) -> dict[str, Any]:
+def _line_facts(line: LineMeasurement, observability: Grade) -> dict[str, Any]:
     return {
         "name": line.name,
-        "length_m": line.length_m,
+        "length_m": None if observability == "unobserved" else line.length_m,
+        "observability": observability,
         "direction": _vector(line.direction),
     }
 

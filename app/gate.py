@@ -12,7 +12,11 @@ LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
 LARGEST_BODY_BYTES = 1024 * 1024
 """An outline of 20,000 vertices, written with all their digits."""
 
-LARGEST_UPLOADS_BYTES = {"/api/source": 2 * 2**30, "/api/silhouettes": 64 * 2**20}
+LARGEST_UPLOADS_BYTES = {
+    "/api/source": 2 * 2**30,
+    "/api/silhouettes": 64 * 2**20,
+    "/api/measurements/import": 16 * 2**20,
+}
 """What these paths may be sent instead: files, which they take in piece by piece."""
 
 PAGE_POLICY = "; ".join(

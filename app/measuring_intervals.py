@@ -176,28 +176,23 @@ class IntervalWork:
 
     def _next_job(self) -> _Job | None:
         """Wait for a hull without intervals that stays for a while; None at the end."""
-        while not self._is_stopping:
-            wanted = self._wanted()
-            with self._host.changed:
-                job = self._look(self._host.snapshot, wanted)
-                if job is None:
-                    self._wait(None)
-                    continue
-                left_s = self._quiet_since_s + idle_work.QUIET_S - time.monotonic()
-                if left_s > 0 and not self._is_urgent:
-                    self._wait(left_s)
-                    continue
-                self._is_urgent = self._is_cancelled = False
-                self._seen = job
-                self._progress = Progress(is_running=True)
-            self._tell()
-            return job
-        return None
+        with self._host.changed:
+            while (job := self._due_now()) is None:
+                if self._is_stopping:
+                    return None
+            self._is_urgent = self._is_cancelled = False
+            self._progress = Progress(is_running=True)
+        self._tell()
+        return job
 
-    def _wait(self, timeout_s: float | None) -> None:
-        if not self._is_stopping:
-            # What is wanted changes under another lock; it is looked at anew now and then.
-            self._host.changed.wait(1.0 if timeout_s is None else min(timeout_s, 1.0))
+    def _due_now(self) -> _Job | None:
+        """Return what is to be done now; where it is nothing, or not yet, wait a while first."""
+        job = self._look(self._host.snapshot, self._wanted())
+        left_s = self._quiet_since_s + idle_work.QUIET_S - time.monotonic()
+        if self._is_stopping or (job is not None and (self._is_urgent or left_s <= 0)):
+            return None if self._is_stopping else job
+        self._host.changed.wait(None if job is None else left_s)
+        return None
 
     def _look(self, shown: Snapshot, wanted: Wanted) -> _Job | None:
         """Return what is to be done, None if nothing; waits anew where something is other."""

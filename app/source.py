@@ -4,6 +4,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from uuid import uuid4
 
+from skyfield.api import EarthSatellite
+
 from core.frame import Frame
 from core.radar.course import PassCourse
 
@@ -21,6 +23,7 @@ class Source:
         frames: starts a fresh sequence of frames; it may take its time over each.
         expected_frames: how many will come, None where that is unknown.
         course: gives the course of each pass, at once but for the first time; empty without tracks.
+        satellite: the target's orbit, None where it is not known.
         key: another for every source, so that a page knows when another was loaded.
     """
 
@@ -29,6 +32,7 @@ class Source:
     description: str = ""
     expected_frames: int | None = None
     course: Callable[[], tuple[PassCourse, ...]] = NO_COURSE
+    satellite: EarthSatellite | None = None
     key: str = field(default_factory=lambda: uuid4().hex)
 
 

@@ -6,8 +6,15 @@ from itertools import chain
 from pathlib import Path
 
 from app.source import NO_COURSE, Source
-from core.experiments.demo import DEMO_PASSES, FRAMES_PER_PASS, demo_courses, demo_frames
+from core.experiments.demo import (
+    DEMO_ORBIT,
+    DEMO_PASSES,
+    FRAMES_PER_PASS,
+    demo_courses,
+    demo_frames,
+)
 from core.formats.pass_file import read_pass
+from core.geometry.orbit import satellite_from_elements
 from core.radar.course import course_of_echoes, undivided_course
 from core.radar.imaging import frame_count, frames
 
@@ -22,6 +29,7 @@ def demo_source() -> Source:
         frames=demo_frames,
         expected_frames=FRAMES_PER_PASS * len(DEMO_PASSES),
         course=cache(demo_courses),
+        satellite=satellite_from_elements(DEMO_ORBIT),
     )
 
 

@@ -15,6 +15,7 @@ from app import (
     editing_api,
     export_api,
     extraction_api,
+    measurements_api,
     picking_api,
     reference_api,
     silhouettes_api,
@@ -22,8 +23,10 @@ from app import (
     thumbnails_api,
     viewport_api,
 )
+from app.attitudes import Attitudes
 from app.changes import Changes
 from app.gate import LOOPBACK_NAMES, Gate
+from app.measurement_facts import MeasurementFacts
 from app.measuring import MeasurementDesk
 from app.relay import relay
 from app.stream import LiveStream
@@ -58,11 +61,15 @@ def create_app(
     stream.observe(lambda _: app.state.changes.notify())
     app.state.viewport_pages = pages
     app.state.desk = desk
+    app.state.attitudes = Attitudes(stream, app.state.changes.notify)
+    app.state.measurement_facts = MeasurementFacts(desk, app.state.attitudes)
+    stream.also_told["measurements"] = app.state.measurement_facts
     desk.observe(lambda _: app.state.changes.notify())
     for part in (
         api,
         course_api,
         editing_api,
+        measurements_api,  # before those of exports, which take any name
         export_api,
         extraction_api,
         picking_api,

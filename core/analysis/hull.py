@@ -8,6 +8,7 @@ from core.hull.surface import Surface
 from core.hull.volume import VoteVolume
 from core.measurement.extents import Extent
 from core.measurement.lines import LineMeasurement
+from core.measurement.observability import Grade, observability
 from core.reconstruction import measures_of
 
 
@@ -23,6 +24,7 @@ class Hull:
         is_preview: whether it is a coarser one, of an outline that has not been committed.
         extents: along x, y, z; empty when the hull is.
         lines: principal lines; empty while an extent is open.
+        line_grades: how well the views constrain each of the lines.
         unobserved: (3,) direction that no voting frame constrains, or None.
         vertex_count, face_count: of its surface.
         volume_m3: that it encloses.
@@ -41,6 +43,7 @@ class Hull:
     face_count: int
     volume_m3: float
     emptied_by: tuple[int, ...] = ()
+    line_grades: tuple[Grade, ...] = ()
 
 
 def hull_of(volume: VoteVolume, surface: Surface, *, revision: int, is_preview: bool) -> Hull:
@@ -48,6 +51,7 @@ def hull_of(volume: VoteVolume, surface: Surface, *, revision: int, is_preview: 
     voters = volume.voters
     views = [voter.view for voter in voters.values() if voter.votes]
     measures = measures_of(surface, volume.grid, views)
+    seen = observability(views) if measures.lines else None
     return Hull(
         revision=revision,
         frames=len(voters),
@@ -61,4 +65,7 @@ def hull_of(volume: VoteVolume, surface: Surface, *, revision: int, is_preview: 
         face_count=len(surface.faces),
         volume_m3=surface.volume_m3(),
         emptied_by=tuple(n + 1 for n in emptied_by(volume)) if surface.is_empty else (),
+        line_grades=()
+        if seen is None
+        else tuple(seen.grade(line.direction) for line in measures.lines),
     )

@@ -237,6 +237,10 @@ class MeasurementBook:
             raise NothingLeft("There is no change of the measurements to make again.")
         return replace(self, position=self.position + 1)
 
+    def then(self, later: "MeasurementBook") -> "MeasurementBook":
+        """Return the book with the entries of one made from it, all changes as one step."""
+        return self if later is self else self._turned(later.entries)
+
     def _swapped(self, old: Entry, new: Entry) -> "MeasurementBook":
         return self._turned(new if entry is old else entry for entry in self.entries)
 

@@ -1,16 +1,17 @@
 """Measurements as JSON and CSV, out and in again unchanged.
 
 Both hold the specs, by which a hull is measured anew, and the readings that were taken. In CSV one
-row is one measurement; what only the spec knows is JSON in its last column.
+row is one measurement; what only the spec knows is JSON in its last column. Numbers that every hull
+has by itself, its extents for one, may stand below them: they have no spec, and are read past.
 """
 
 import csv
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -32,6 +33,10 @@ COLUMNS = (
     *("version", "kind", "name", "value", "unit", "low", "high", "x", "y", "z", "frame"),
     *("epoch_utc", "undirected", "revision", "threshold", "note", "spec"),
 )
+
+
+HullKind = Literal["hull extent", "hull line", "hull volume"]
+HULL_KINDS: tuple[HullKind, ...] = get_args(HullKind)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -100,6 +105,31 @@ class Entry:
     reading: Reading | None = None
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class HullNumber:
+    """A number that a hull has by itself, as CSV files hold it beside the measurements.
+
+    Attributes:
+        kind: what it is of.
+        name: what a person calls it.
+        reading: None where the views do not bound it.
+    """
+
+    kind: HullKind
+    name: str
+    reading: Reading | None
+
+
+def spec_from_json(value: object, where: str = "The measurement") -> Spec:
+    """Return the spec that JSON values describe, as a file has it but for its reading.
+
+    Raises:
+        ValueError: an unknown kind, unknown, missing or wrong fields; the sentence says where.
+    """
+    found: Spec = decoded(value, Spec, where)
+    return found
+
+
 def reading_of(
     measurement: Measurement,
     *,
@@ -137,13 +167,18 @@ def reading_of(
     )
 
 
-def measurements_to_json(entries: Sequence[Entry]) -> str:
-    """Return measurements as JSON text."""
+def measurements_to_json(entries: Sequence[Entry], about: Mapping[str, Any] | None = None) -> str:
+    """Return measurements as JSON text.
+
+    Args:
+        entries: the measurements.
+        about: what else a program may want to know of them, as JSON values; read past.
+    """
     check_specs(tuple(entry.spec for entry in entries))
     rows = [
         {**encoded(entry.spec), "reading": _reading_to_json(entry.reading)} for entry in entries
     ]
-    content = {"format": FORMAT, "version": VERSION, "measurements": rows}
+    content = {"format": FORMAT, "version": VERSION, **(about or {}), "measurements": rows}
     return json.dumps(content, ensure_ascii=False, indent=1, allow_nan=False) + "\n"
 
 
@@ -164,23 +199,36 @@ def measurements_from_json(text: str) -> tuple[Entry, ...]:
     return _checked([_entry(row, f"Measurement {i}") for i, row in enumerate(rows, start=1)])
 
 
-def measurements_to_csv(entries: Sequence[Entry]) -> str:
-    """Return measurements as CSV text, one row each, below a row of headings."""
+def measurements_to_csv(entries: Sequence[Entry], hull: Sequence[HullNumber] = ()) -> str:
+    """Return measurements as CSV text, one row each, below a row of headings.
+
+    Args:
+        entries: the measurements.
+        hull: numbers of the hull itself, which come last.
+    """
     check_specs(tuple(entry.spec for entry in entries))
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(COLUMNS)
     for entry in entries:
         spec = encoded(entry.spec)
-        common = [spec.pop(name) for name in ("kind", "name", "note")]
-        reading = _reading_to_json(entry.reading)
-        vector = [None] * 3 if reading is None else reading["direction"] or [None] * 3
-        cells = [] if reading is None else [reading[name] for name in _BEFORE]
-        after = [None] * 5 if reading is None else [reading[name] for name in _AFTER]
+        kind, name, note = (spec.pop(name) for name in ("kind", "name", "note"))
         details = json.dumps(spec, ensure_ascii=False, allow_nan=False)
-        numbers = (cells or [None] * 4) + vector + after
-        writer.writerow([VERSION, *common[:2], *map(_cell, numbers), common[2], details])
+        writer.writerow([VERSION, kind, name, *_reading_cells(entry.reading), note, details])
+    for number in hull:
+        cells = _reading_cells(number.reading)
+        writer.writerow([VERSION, number.kind, number.name, *cells, "", ""])
     return text.getvalue()
+
+
+def _reading_cells(found: Reading | None) -> list[str]:
+    """Return the cells from value to threshold, empty where nothing was read."""
+    if found is None:
+        return [""] * 12
+    reading = encoded(found)
+    vector = reading["direction"] or [None] * 3
+    before, after = ([reading[name] for name in names] for names in (_BEFORE, _AFTER))
+    return [_cell(value) for value in (*before, *vector, *after)]
 
 
 _BEFORE = ("value", "unit", "low", "high")
@@ -199,7 +247,12 @@ def measurements_from_csv(text: str) -> tuple[Entry, ...]:
         raise ValueError(f"The file is no CSV that can be read: {error}.") from error
     if not rows or tuple(rows[0]) != COLUMNS:
         raise ValueError(f"The first row must hold the headings {','.join(COLUMNS)}.")
-    return _checked([_row_entry(row, i) for i, row in enumerate(rows[1:], start=2) if row])
+    found = [(line, row) for line, row in enumerate(rows[1:], start=2) if row]
+    return _checked([_row_entry(row, line) for line, row in found if not _is_of_hull(row)])
+
+
+def _is_of_hull(row: list[str]) -> bool:
+    return len(row) == len(COLUMNS) and row[1] in HULL_KINDS
 
 
 def write_measurements(path: Path, entries: Sequence[Entry]) -> None:
@@ -227,12 +280,23 @@ def read_measurements(path: Path) -> tuple[Entry, ...]:
     try:
         if path.stat().st_size > MAX_BYTES:
             raise ValueError(f"{path.name} is larger than {MAX_BYTES >> 20} MiB.")
-        text = path.read_bytes().decode()
+        content = path.read_bytes()
     except OSError as error:
         raise ValueError(f"{path} could not be read: {reason(error)}.") from error
+    return measurements_from_bytes(content, path.name)
+
+
+def measurements_from_bytes(content: bytes, name: str) -> tuple[Entry, ...]:
+    """Return the measurements of a file's content: CSV where its name ends so, else JSON.
+
+    Raises:
+        ValueError: no text, or as `measurements_from_json`.
+    """
+    try:
+        text = content.decode()
     except UnicodeDecodeError as error:
-        raise ValueError(f"{path.name} is no text in UTF-8: {error.reason}.") from error
-    is_csv = path.suffix.lower() == ".csv"
+        raise ValueError(f"{name} is no text in UTF-8: {error.reason}.") from error
+    is_csv = name.lower().endswith(".csv")
     return measurements_from_csv(text) if is_csv else measurements_from_json(text)
 
 

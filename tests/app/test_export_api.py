@@ -69,15 +69,18 @@ def test_measurements_carry_the_hull_that_they_belong_to(page) -> None:
     hull = state(page)["hull"]
     facts = page.get("/api/export/measurements.json").json()
     assert facts["hull"] == hull
-    text = page.get("/api/export/measurements.csv").text
-    rows = list(csv.DictReader(io.StringIO(text)))
-    assert {row["hull_revision"] for row in rows} == {str(hull["revision"])}
-    assert {row["threshold_votes"] for row in rows} == {str(hull["threshold"])}
-    extents = [row for row in rows if row["kind"] == "extent"]
-    for row, extent in zip(extents, hull["extents"], strict=True):
+    answer = page.get("/api/export/measurements.csv")
+    assert f"-rev{hull['revision']}-measurements.csv" in answer.headers["Content-Disposition"]
+    assert answer.text == page.get("/api/measurements.csv").text
+    rows = [row for row in csv.DictReader(io.StringIO(answer.text)) if row["value"]]
+    assert {row["revision"] for row in rows} == {str(hull["revision"])}
+    assert {row["threshold"] for row in rows} == {str(hull["threshold"])}
+    extents = [row for row in rows if row["kind"] == "hull extent"]
+    told = [extent for extent in hull["extents"] if extent["value_m"] is not None]
+    for row, extent in zip(extents, told, strict=True):
         assert row["name"] == extent["name"]
-        assert row["value"] == ("" if extent["value_m"] is None else str(extent["value_m"]))
-        assert float(row["direction_x"]) == extent["direction"][0]
+        assert float(row["value"]) == extent["value_m"]
+        assert [float(row[axis]) for axis in "xyz"] == extent["direction"]
 
 
 @pytest.mark.parametrize("kind", ["coco.json", "labelme.zip", "masks.zip"])
