@@ -40,6 +40,7 @@ export class Picking {
     this.#now = state.picking?.[this.#name] ?? null;
     const bar = part("pick-bar");
     bar.hidden = this.#now === null;
+    part("pick-chip").hidden = this.#now === null;
     part("measure-button").disabled = state.hull === null || state.hull.is_empty;
     part("measure-button").setAttribute("aria-pressed", String(this.#now !== null));
     for (const button of this.#kindButtons()) {
@@ -99,10 +100,10 @@ export class Picking {
   }
 
   #kindButtons() {
-    return document.querySelectorAll("[data-measure]");
+    return part("measure-menu").querySelectorAll("button");
   }
 
   #snapButtons() {
-    return document.querySelectorAll("[data-snap]");
+    return part("pick-snaps").querySelectorAll("button");
   }
 }

@@ -10,7 +10,7 @@ from playwright.sync_api import Page, expect
 
 from app.camera import FAR_FIELD_OF_VIEW_RAD
 from tests.app.synthetic import source
-from tests.browser.test_space import light, until
+from tests.browser.test_space import drawn, light, share_changed, until
 
 
 class Space:
@@ -20,9 +20,14 @@ class Space:
         self.page = page
         self.client = httpx.Client(base_url=address, trust_env=False)
         self.box = page.locator("#viewport").bounding_box()
-        name = re.search(r"/viewport/([\w-]+)/", page.locator("#viewport").get_attribute("src"))[1]
-        answer = self.client.put(f"/api/viewport/{name}/view", json={"view": "-z"}).json()
-        self.camera_m = np.array(answer["position"])
+        source = page.locator("#viewport").get_attribute("src")
+        self.name = re.search(r"/viewport/([\w-]+)/", source)[1]
+        self.camera_m = self.look_down()
+
+    def look_down(self) -> np.ndarray:
+        """Look from above, and return where the camera then stands."""
+        answer = self.client.put(f"/api/viewport/{self.name}/view", json={"view": "-z"})
+        return np.array(answer.json()["position"])
 
     def at(self, x_m: float, y_m: float, z_m: float = 0.0) -> tuple[float, float]:
         """Where a point of the target frame lies in the window; x is up, y to the right."""
@@ -47,7 +52,7 @@ class Space:
 def space(visit):
     visited = visit(source(6), playing=True, viewport=True)
     page = visited.page
-    page.set_viewport_size({"width": 1100, "height": 640})
+    page.set_viewport_size({"width": 1300, "height": 800})
     expect(page.locator("#status")).to_have_text("All 6 frames received")
     until(page, lambda image: light(image).mean() > 0.02)
     space = Space(page, visited.address)
@@ -55,14 +60,15 @@ def space(visit):
     until(page, lambda image: light(image)[95:105, 95:105].mean() > 0.9)
     yield space
     space.client.close()
-    assert visited.complaints == []
+    # viser's own, each time that a node is dragged.
+    passive = "Unable to preventDefault inside passive event listener invocation."
+    assert [text for text in visited.complaints if text != passive] == []
 
 
-def test_two_clicks_measure_a_span_whose_end_can_then_be_dragged(space: Space, visit) -> None:
+def test_two_clicks_measure_a_span_whose_end_can_then_be_dragged(space: Space) -> None:
     page, bar = space.page, space.page.locator("#pick-bar")
     page.keyboard.press("m")
     expect(page.locator("#pick-hint")).to_have_text("Length: click the first end – Esc cancels")
-    desk = space.state
     space.click(11.0, 11.0)
     expect(page.locator("#pick-complaint")).to_have_text(
         "There is no hull under the pointer; click on its surface."
@@ -71,21 +77,24 @@ def test_two_clicks_measure_a_span_whose_end_can_then_be_dragged(space: Space, v
     space.picked(1)
     expect(page.locator("#pick-complaint")).to_be_hidden()
 
-    # A drag turns the view and picks nothing; the page still waits for the second end.
-    page.mouse.move(*space.at(-9.0, -9.0))
-    page.mouse.down()
-    page.mouse.move(*space.at(-9.0, -7.0), steps=4)
-    page.mouse.move(*space.at(-9.0, -9.0), steps=4)
-    page.mouse.up()
-    space.picked(1)
     space.click(2.2, -6.5)
     expect(page.locator("#pick-complaint")).to_contain_text("That is the same point again")
+
+    # A drag turns the view and picks nothing.
+    before = drawn(page)
+    page.mouse.move(*space.at(-9.0, -9.0))
+    page.mouse.down()
+    page.mouse.move(*space.at(-9.0, 0.0), steps=4)
+    page.mouse.up()
+    until(page, lambda image: share_changed(image, before) > 0.05)
+    space.look_down()
+    until(page, lambda image: share_changed(image, before) < 0.01)
+    space.picked(1)
     space.click(2.2, 6.5)
     space.picked(0)
     (item,) = measured(space, 1)
     assert item["name"] == "length 1"
     assert item["value"] == pytest.approx(13.0, abs=0.5)
-    assert desk()["picking"]
 
     page.keyboard.press("Escape")
     expect(bar).to_be_hidden()
@@ -128,9 +137,10 @@ def test_the_menu_chooses_what_is_measured_and_keys_what_a_click_snaps_to(space:
     expect(page.locator("#pick-hint")).to_contain_text("Polyline: click the first point")
     page.get_by_role("button", name="Extreme").click()
     expect(page.locator("#pick-hint")).to_contain_text("farthest out within 1.6 m")
-    for place in ((2.2, -6.5), (0.0, 0.0), (2.2, 6.5)):
+    # viser sends at most one click in 20 ms.
+    for count, place in enumerate(((2.2, -6.5), (0.0, 0.0), (2.2, 6.5)), 1):
         space.click(*place)
-    space.picked(3)
+        space.picked(count)
     page.keyboard.press("Backspace")
     space.picked(2)
     page.keyboard.press("Enter")
