@@ -43,8 +43,7 @@ def serve(
         port: port on 127.0.0.1; 0 takes any free one.
         empty: begin without a source; the page loads the demo or a pass file that is dropped on it.
         open: also open the page in the browser.
-        reference: a mesh (GLB, PLY, OBJ, STL) in metres, to look at beside the hull and to compare
-            it with; the hull itself owes nothing to it.
+        reference: a mesh (GLB, PLY, OBJ, STL) in metres, to see and to compare the hull with.
         reference_attitude: quaternion w x y z that turns the mesh's axes to the target frame's.
         reference_offset: x y z in metres by which it is then moved.
         carving: how the hull is carved.
