@@ -312,11 +312,7 @@ def free_line_name(taken: Collection[str]) -> str:
 def hint_of(picking: Picking, surface: Surface | None) -> str:
     """Return what to do next, in a sentence."""
     snap_words = _snap_words(picking.snap, surface) if picking.is_at_point else ""
-    return f"{_title(picking.kind)}: {_next_step(picking)}{snap_words}"
-
-
-def _title(kind: Kind) -> str:
-    return "Section through a point" if kind == "section" else kind[0].upper() + kind[1:]
+    return f"{picking.kind.capitalize()}: {_next_step(picking)}{snap_words}"
 
 
 def _next_step(picking: Picking) -> str:

@@ -128,10 +128,12 @@ def _vertex_areas_m2(surface: Surface) -> Floats:
 
 
 def _rounded_up(limit_m: float) -> float:
-    """Return the next of 1, 2 and 5 times a power of ten, at least a millimetre."""
+    """Return the next round length, at least a millimetre."""
     limit_m = max(limit_m, 1e-3)
     power = 10.0 ** np.floor(np.log10(limit_m))
-    return float(next(step * power for step in (1, 2, 5, 10) if step * power >= limit_m))
+    steps = power * np.array([1, 1.5, 2, 3, 4, 5, 6, 8, 10])
+    # Rounding must not make of 0.1 the next longer.
+    return float(steps[steps >= (1 - 1e-9) * limit_m][0])
 
 
 class ReferenceDesk:

@@ -2,11 +2,12 @@
 
 import threading
 from collections.abc import Iterable
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import trimesh
 import viser
+from numpy.typing import NDArray
 
 from app.camera import HOME_DIRECTION, UP, home_camera
 from app.layers import (
@@ -128,15 +129,11 @@ class Viewport:
         with self._lock, self._server.atomic():
             self._server.scene.remove_by_name("/distance/surface")
             if compared is not None:
-                shown = lifted(compared.surface, DISTANCE_LIFT_M)
-                mesh = trimesh.Trimesh(
-                    shown.vertices_m,
-                    shown.faces,
-                    vertex_colors=compared.colours(),
-                    process=False,
-                )
-                self._server.scene.add_mesh_trimesh(
-                    "/distance/surface", mesh, cast_shadow=False, receive_shadow=False
+                self._server.scene.add_glb(
+                    "/distance/surface",
+                    _coloured_glb(compared),
+                    cast_shadow=False,
+                    receive_shadow=False,
                 )
         self._server.flush()
 
@@ -278,3 +275,35 @@ class Viewport:
         self, name: str, text: str, position: Floats, *, anchor: LabelAnchor = "center-center"
     ) -> None:
         self._server.scene.add_label(name, text, position=position, anchor=anchor)
+
+
+def _coloured_glb(compared: Compared) -> bytes:
+    """Return a hull in the colours of its distances as a GLB file."""
+    shown = lifted(compared.surface, DISTANCE_LIFT_M)
+    mesh = trimesh.Trimesh(
+        shown.vertices_m, shown.faces, vertex_colors=_linear(compared.colours()), process=False
+    )
+    content: bytes = trimesh.exchange.gltf.export_glb(
+        trimesh.Scene(mesh), include_normals=True, tree_postprocessor=_make_dull
+    )
+    return content
+
+
+def _linear(colours: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return colours of screens (sRGB) as glTF has those of vertices, in proportion to light.
+
+    Source: IEC 61966-2-1, the inverse transfer function.
+    """
+    shares = colours / 255.0
+    light = np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)
+    encoded: NDArray[np.uint8] = np.round(255 * light).astype(np.uint8)
+    return encoded
+
+
+def _make_dull(tree: dict[str, Any]) -> None:
+    """Give a glTF tree's meshes a material; without one they are of metal, and nearly black."""
+    dull = {"metallicFactor": 0.0, "roughnessFactor": 1.0}
+    tree["materials"] = [{"pbrMetallicRoughness": dull, "doubleSided": True}]
+    for mesh in tree["meshes"]:
+        for primitive in mesh["primitives"]:
+            primitive["material"] = 0

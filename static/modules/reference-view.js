@@ -9,10 +9,12 @@ const part = (id) => document.getElementById(id);
 export class ReferenceView {
   #space;
   #seen = "";
+  #isColoured = false;
 
   /** Show it beside a SpaceView, and call `complain(sentence)` for what is refused. */
   constructor(space, complain) {
     this.#space = space;
+    space.onLayers = () => this.#showLegend();
     openUnder(part("compare-menu"), part("compare-button"));
     part("compare-run").addEventListener("click", () => {
       send("POST", "/api/reference/comparison")
@@ -30,14 +32,20 @@ export class ReferenceView {
     part("compare-run").textContent = isRunning ? "Comparing…" : "Compare with reference";
     part("compare-note").textContent = complaint;
     part("compare-note").hidden = complaint === "";
-    part("distance-legend").hidden = !reference.is_coloured || !this.#space.layers.includes("distance");
+    this.#isColoured = reference.is_coloured;
+    this.#showLegend();
     const text = JSON.stringify([comparison, isStale]);
     if (text === this.#seen) return;
     this.#seen = text;
     part("compare-facts").classList.toggle("stale", isStale);
     part("compare-stamp").textContent = stamp(comparison, isStale);
     part("compare-facts").replaceChildren(...(comparison ? rows(comparison) : []).map(row));
-    if (comparison) showLegend(comparison);
+    if (comparison) scaleLegend(comparison);
+  }
+
+  #showLegend() {
+    const isShown = this.#isColoured && this.#space.layers.includes("distance");
+    part("distance-legend").hidden = !isShown;
   }
 }
 
@@ -69,7 +77,7 @@ function row([name, value, hint]) {
   return pair;
 }
 
-function showLegend({ limit_m: limit, colours }) {
+function scaleLegend({ limit_m: limit, colours }) {
   const legend = part("distance-legend");
   legend.querySelector("i").style.background = `linear-gradient(90deg, ${colours.join(", ")})`;
   part("distance-low").value = `−${fixed(limit, 2)}`;

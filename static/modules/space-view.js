@@ -18,6 +18,9 @@ export class SpaceView {
   #canDraw;
   #ready;
 
+  /** Is called whenever other layers are on show. */
+  onLayers = () => {};
+
   /** Load the view, and call `complain(sentence)` for what is refused. */
   constructor(complain) {
     this.#complain = complain;
@@ -154,6 +157,7 @@ export class SpaceView {
   }
 
   #showPressed() {
+    this.onLayers();
     for (const button of part("space-layers").querySelectorAll("button")) {
       button.ariaPressed = String(this.#layers.has(button.dataset.layer));
     }

@@ -29,7 +29,7 @@ def test_a_box_02_m_larger_on_all_sides_is_02_m_outside():
     assert found.comparison.hausdorff_m == pytest.approx(0.2 * np.sqrt(3))
     assert found.comparison.intersection_over_union == pytest.approx(8.0 / 14.784, abs=0.03)
     assert found.revision == 1
-    assert found.limit_m == 0.5
+    assert found.limit_m == 0.4
 
 
 AT_ONE = {"revision": 1, "spacing_m": 0.1}
