@@ -2,12 +2,10 @@
 
 import threading
 from collections.abc import Iterable
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
-import trimesh
 import viser
-from numpy.typing import NDArray
 
 from app.camera import HOME_DIRECTION, UP, home_camera
 from app.layers import (
@@ -25,8 +23,9 @@ from app.layers import (
 from app.picture_plane import picture_plane
 from app.pictures import SHOWN_FLOOR_DB, translucent_picture
 from app.reference import Compared
+from app.reference_glb import coloured_glb
 from app.snapshot import Record, Snapshot
-from app.surface_node import SurfaceNode, lifted
+from app.surface_node import SurfaceNode
 from core.analysis.frames import AnalysedFrame
 from core.arrays import Floats
 from core.frame import Frame
@@ -42,9 +41,6 @@ GRID_SECTION_M = 5.0
 SIGHT_REACH = (0.58, 0.42)
 """Where the arrow of the line of sight begins and ends, in sides of the window from the centre."""
 
-
-DISTANCE_LIFT_M = 0.02
-"""By which the coloured hull lies outside the hull, which would else shine through."""
 
 LabelAnchor = Literal["center-center", "bottom-left"]
 
@@ -131,7 +127,7 @@ class Viewport:
             if compared is not None:
                 self._server.scene.add_glb(
                     "/distance/surface",
-                    _coloured_glb(compared),
+                    coloured_glb(compared),
                     cast_shadow=False,
                     receive_shadow=False,
                 )
@@ -275,35 +271,3 @@ class Viewport:
         self, name: str, text: str, position: Floats, *, anchor: LabelAnchor = "center-center"
     ) -> None:
         self._server.scene.add_label(name, text, position=position, anchor=anchor)
-
-
-def _coloured_glb(compared: Compared) -> bytes:
-    """Return a hull in the colours of its distances as a GLB file."""
-    shown = lifted(compared.surface, DISTANCE_LIFT_M)
-    mesh = trimesh.Trimesh(
-        shown.vertices_m, shown.faces, vertex_colors=_linear(compared.colours()), process=False
-    )
-    content: bytes = trimesh.exchange.gltf.export_glb(
-        trimesh.Scene(mesh), include_normals=True, tree_postprocessor=_make_dull
-    )
-    return content
-
-
-def _linear(colours: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Return colours of screens (sRGB) as glTF has those of vertices, in proportion to light.
-
-    Source: IEC 61966-2-1, the inverse transfer function.
-    """
-    shares = colours / 255.0
-    light = np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)
-    encoded: NDArray[np.uint8] = np.round(255 * light).astype(np.uint8)
-    return encoded
-
-
-def _make_dull(tree: dict[str, Any]) -> None:
-    """Give a glTF tree's meshes a material; without one they are of metal, and nearly black."""
-    dull = {"metallicFactor": 0.0, "roughnessFactor": 1.0}
-    tree["materials"] = [{"pbrMetallicRoughness": dull, "doubleSided": True}]
-    for mesh in tree["meshes"]:
-        for primitive in mesh["primitives"]:
-            primitive["material"] = 0

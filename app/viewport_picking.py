@@ -12,18 +12,16 @@ from viser import SceneClickEvent
 from app.layers import PICK_COLOUR
 from app.measuring import MeasurementDesk
 from app.picking import (
-    STEMS,
     Kind,
     Picking,
     Ray,
     Snap,
-    free_line_name,
-    hint_of,
     hull_size_m,
     pick_on,
     prepare,
     spec_of,
 )
+from app.picking_words import STEMS, free_line_name, hint_of
 from app.snapshot import Snapshot
 from app.viewport_pages import ViewportPages
 from core.hull.closed_mesh import Surface

@@ -10,17 +10,14 @@ from app.picking import (
     EXTREME_SHARE,
     KINDS,
     SNAPS,
-    Pick,
     Picking,
     Ray,
-    free_line_name,
-    hint_of,
     hull_size_m,
     pick_on,
     prepare,
     spec_of,
 )
-from core.measurement.anchors import PickRay, Point, SurfacePoint, resolve
+from core.measurement.anchors import PickRay, SurfacePoint, resolve
 from core.measurement.measuring import measure
 from core.measurement.picking import nearest_point_m, points_within_m
 from core.measurement.results import Lost
@@ -137,36 +134,6 @@ def test_a_polyline_of_one_point_cannot_be_ended():
     body = box()
     with pytest.raises(ValueError, match="at least two points"):
         spec_of(picked("polyline", ray([1, 0, 9]), body=body), "it", body)
-
-
-def test_line_features_are_numbered_as_in_the_paper():
-    assert free_line_name(()) == "l₁"
-    assert free_line_name({"l₁", "l₃", "span"}) == "l₂"
-    assert free_line_name({f"l{n}".translate(str.maketrans("123", "₁₂₃")) for n in (1, 2, 3)}) == (
-        "l₄"
-    )
-
-
-@pytest.mark.parametrize(
-    ("picking", "hint"),
-    [
-        (Picking(kind="length"), "Length: click the first end"),
-        (
-            Picking(kind="length", snap="extreme"),
-            "Length: click the first end, farthest out within 0.4 m",
-        ),
-        (Picking(kind="plane normal", snap="extreme"), "Plane normal: click a flat face"),
-        (
-            Picking(
-                kind="polyline",
-                picks=(Pick(anchor=Point(point_m=np.zeros(3)), place_m=np.zeros(3)),),
-            ),
-            "Polyline: click the next point, Enter ends it",
-        ),
-    ],
-)
-def test_the_hint_says_what_to_click_next(picking, hint):
-    assert hint_of(picking, box((4.0, 2.0, 1.0))) == hint
 
 
 @pytest.mark.parametrize("snap", SNAPS)

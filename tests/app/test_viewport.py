@@ -8,8 +8,9 @@ import trimesh
 
 from app.layers import COMPONENT_COLOURS
 from app.reference import compared
+from app.reference_glb import coloured_glb
 from app.snapshot import Record, Snapshot
-from app.viewport import Viewport, _coloured_glb
+from app.viewport import Viewport
 from app.viser_server import PrivateViserServer
 from core.analysis.analysis import Analysis
 from tests.app.synthetic import SETTINGS, frames
@@ -131,7 +132,7 @@ def test_a_compared_hull_is_shown_in_its_colours_until_it_is_taken_off(viewport)
     viewport.show_distances(done)
     scene = viewport._server.scene
     assert scene.get_handle_by_name("/distance/surface") is not None
-    (mesh,) = trimesh.load(io.BytesIO(_coloured_glb(done)), file_type="glb").geometry.values()
+    (mesh,) = trimesh.load(io.BytesIO(coloured_glb(done)), file_type="glb").geometry.values()
     outside = mesh.vertices[:, 0] > 2.0
     # #b2182b, in proportion to light.
     red = mesh.visual.vertex_attributes["color"][:, :3] == [114, 2, 6]
