@@ -49,7 +49,8 @@ Facts = Annotated[MeasurementFacts, Depends(_facts)]
 class AddOrder(Body):
     """What to measure, as a file of measurements describes it; without a name it gets one."""
 
-    spec: dict[str, Any]
+    spec: dict[str, Any] | None = None
+    specs: list[dict[str, Any]] = Field(default=[], max_length=100, description="All or none.")
 
 
 class ChangeOrder(Body):
@@ -78,7 +79,9 @@ def read_measurements(facts: Facts) -> dict[str, Any]:
 def add(order: AddOrder, desk: Desk, facts: Facts) -> dict[str, Any]:
     """Measure something more."""
     with refusing():
-        desk.add(_spec(order.spec, desk))
+        values = [*([] if order.spec is None else [order.spec]), *order.specs]
+        specs = [_spec(each, desk) for each in values]
+        desk.turn(lambda book: book.added(specs))
     return _measured(desk, facts)
 
 

@@ -1,6 +1,7 @@
 // What is known of the frame and of the hull, in words and numbers.
 
 import { leastSeen, nearestAxis } from "./directions.js";
+import { endsText } from "./measurement-text.js";
 import { count, fixed, frames, timeText, vector, withUnit } from "./numbers.js";
 
 /** The rows that describe a frame. */
@@ -46,9 +47,10 @@ function silhouetteText(frame) {
 }
 
 /** The rows that describe the hull's surface, how lightly it is drawn, and how soon it followed. */
-export function hullRows(hull, light, latencyMs) {
+export function hullRows(hull, light, latencyMs, interval) {
+  const ends = interval ? ` ${endsText(...interval, "m³")}` : "";
   const rows = [
-    ["Volume", hull.volume_m3 === null ? "not bounded" : withUnit(hull.volume_m3, 1, "m³")],
+    ["Volume", hull.volume_m3 === null ? "not bounded" : `${withUnit(hull.volume_m3, 1, "m³")}${ends}`],
     ["Vertices", count(hull.vertices)],
     ["Faces", count(hull.faces)],
   ];
@@ -69,43 +71,66 @@ export function showRows(list, rows) {
   );
 }
 
-/** Replace the rows of the extents' table; what is not bounded gets words, never a number. */
-export function showExtents(body, extents) {
+/**
+ * Replace the rows of the extents' table; what is not bounded gets words, never a number.
+ * `intervals` are pairs of ends, in the same order; empty where there are none.
+ */
+export function showExtents(body, extents, intervals = []) {
   body.replaceChildren(
-    ...extents.map((extent) => {
+    ...extents.map((extent, index) => {
       const row = document.createElement("tr");
       const name = element("th", extent.name);
       name.scope = "row";
       const swatch = element("i", "");
       swatch.className = `swatch ${extent.name[0]}`;
       name.prepend(swatch);
-      row.append(name, extentCell(extent));
+      if (extent.is_bounded) name.append(gradeMark(extent));
+      row.append(name, extentCell(extent, intervals[index]));
       return row;
     }),
   );
 }
 
-function extentCell(extent) {
-  if (!extent.is_bounded) {
-    const cell = element("td", "not bounded by these views");
-    cell.className = "open";
-    return cell;
-  }
-  const cell = element("td", fixed(extent.value_m, 2));
-  cell.append(element("small", "\u202fm"));
+function extentCell(extent, interval) {
+  if (!extent.is_bounded) return openCell("not bounded by these views");
+  return lengthCell(extent.value_m, interval);
+}
+
+function openCell(words) {
+  const cell = element("td", words);
+  cell.className = "open";
   return cell;
 }
 
+function lengthCell(length, interval) {
+  const cell = element("td", fixed(length, 2));
+  cell.append(element("small", "\u202fm"));
+  if (interval?.[0] === null || interval === undefined) return cell;
+  const ends = element("span", endsText(...interval, "m"));
+  ends.className = "interval";
+  ends.title = "95 % interval";
+  cell.append(ends);
+  return cell;
+}
+
+/** " weakly constrained" behind what the views constrain only so. */
+function gradeMark({ observability }) {
+  const mark = element("span", observability === "weak" ? " weakly constrained" : "");
+  mark.className = "grade";
+  return mark;
+}
+
 /** Replace the rows of the principal lines' table: length and unit vector of each. */
-export function showLines(body, lines) {
+export function showLines(body, lines, intervals = []) {
   body.replaceChildren(
-    ...lines.map((line) => {
+    ...lines.map((line, index) => {
       const row = document.createElement("tr");
       const name = element("th", line.name);
       name.scope = "row";
-      name.append(element("small", vector(line.direction)));
-      const length = element("td", fixed(line.length_m, 2));
-      length.append(element("small", "\u202fm"));
+      name.append(gradeMark(line), element("small", vector(line.direction)));
+      const length = line.length_m === null
+        ? openCell("not observed by these views")
+        : lengthCell(line.length_m, intervals[index]);
       row.append(name, length);
       return row;
     }),

@@ -28,11 +28,13 @@ export function showHull(state) {
   part("hull-body").dataset.run = state.run;
   part("hull-body").dataset.revision = hull?.revision ?? 0;
   if (hull === null || hull.is_empty) return;
-  showExtents(part("extents"), hull.extents);
-  showLines(part("lines"), hull.lines);
+  const own = state.measurements?.hull;
+  const intervals = own?.revision === hull.revision ? own : {};
+  showExtents(part("extents"), hull.extents, intervals.extents);
+  showLines(part("lines"), hull.lines, intervals.lines);
   part("lines-empty").hidden = hull.lines.length > 0;
   showUnobserved(part("unobserved"), hull, state);
-  showRows(part("hull-facts"), hullRows(hull, state.light, state.latency_ms?.last ?? null));
+  showRows(part("hull-facts"), hullRows(hull, state.light, state.latency_ms?.last ?? null, intervals.volume));
 }
 
 function noHullText(hull, infos) {

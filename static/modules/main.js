@@ -10,6 +10,7 @@ import { FramePanel } from "./frame-panel.js";
 import { showHull } from "./hull-view.js";
 import { resizablePanes } from "./panes.js";
 import { Loading } from "./loading.js";
+import { Measurements } from "./measurements.js";
 import { Picking } from "./picking.js";
 import { Proposals } from "./proposals.js";
 import { showSaved } from "./saved-view.js";
@@ -45,6 +46,7 @@ const banner = new Banner(part("banner"));
 const panel = new FramePanel(showEditing, complain, showFrame);
 const { session, view, scene } = panel;
 const rightPane = new RightPane({ go: showFrame });
+const measurements = new Measurements({ open: () => tabs.open("measurements") });
 const editor = new Editor(part("frame-canvas"), view, session, scene, {
   redraw: () => panel.redraw(),
   complain,
@@ -201,6 +203,7 @@ function showState(next) {
   exporting.update(state);
   carving.update(state);
   rightPane.update(state);
+  measurements.update(state);
   review.update(state);
   transport.update(state);
   timeline.update(state);
@@ -387,7 +390,7 @@ bindShortcuts(
     ...named(proposing, (key) => () => proposals.choose(key)),
     ...named(reviewing, (name) => () => review.set(name)),
     delete: () => picking.takeBack() || editor.remove(),
-    measure: () => picking.toggle(),
+    pick: () => picking.toggle(),
     smaller: () => toolbar.scaleBrush(1 / 1.25),
     larger: () => toolbar.scaleBrush(1.25),
     claim: () => toolbar.toggleClaim(),
@@ -404,6 +407,7 @@ bindShortcuts(
     ghost: () => panel.toggleLayer("ghost"),
     overlay: () => panel.toggleLayer("hull"),
     shadow: () => panel.toggleLayer("shadow"),
+    measure: () => measurements.openMenu(),
     sheet: openSheet,
   },
   (isHidden) => {

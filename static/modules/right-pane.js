@@ -64,8 +64,10 @@ export class RightPane {
 
   #grey() {
     const isOld = this.#waiting > 0 || this.#isSaving;
-    part("hull-body").classList.toggle("stale", isOld);
-    part("hull-body").ariaBusy = String(isOld);
+    for (const id of ["hull-body", "book-rows"]) {
+      part(id).classList.toggle("stale", isOld);
+      part(id).ariaBusy = String(isOld);
+    }
   }
 
   #show() {

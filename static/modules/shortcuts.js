@@ -50,9 +50,10 @@ const GROUPS = [
     ["shadow", "D", ["d"], "What lies in the dark behind a lit side"],
     [null, "H held", [], "Hide all that lies over the picture"],
   ]],
-  ["Measuring on the hull", [
-    ["measure", "M", ["m"], "Measure by clicks, or stop"],
-    [null, "Shift click", [], "The farthest point near there"],
+  ["Measurements", [
+    ["measure", "N", ["n"], "Add a measurement that needs no pick"],
+    ["pick", "M", ["m"], "Measure by clicks on the hull, or stop"],
+    [null, "Shift click", [], "While measuring: the farthest point near there"],
     [null, "Ctrl click", [], "The nearest end of the part"],
     [null, "Enter", [], "End a polyline"],
     [null, "Backspace", [], "Take the last point back"],
