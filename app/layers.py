@@ -30,6 +30,12 @@ GRID_COLOUR: Colour = (64, 76, 98)
 UNCARVED_COLOUR: Colour = (86, 180, 233)
 REFERENCE_COLOUR: Colour = (204, 121, 167)
 KEY_POINT_COLOUR: Colour = (255, 176, 72)
+LENGTH_COLOUR: Colour = (240, 228, 66)
+ATTITUDE_COLOUR: Colour = (230, 130, 190)
+SECTION_COLOUR: Colour = (120, 205, 255)
+STALE_COLOUR: Colour = (140, 148, 160)
+PICK_COLOUR: Colour = (255, 255, 255)
+OUTSIDE_COLOUR: Colour = (178, 24, 43)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,6 +61,9 @@ class Layer:
         """The scene's node above all that belongs to it."""
         return f"/{self.name}"
 
+
+REFERENCE_LAYERS = frozenset({"reference", "distance"})
+"""That there are only with a reference."""
 
 LAYERS = (
     Layer(
@@ -111,10 +120,25 @@ LAYERS = (
         is_on=False,
     ),
     Layer(
+        name="measurements",
+        title="Measurements",
+        hint="Lengths, attitudes and sections that are not hidden; grey while they belong to an "
+        "earlier hull. A line that would run inside the hull is drawn beside it",
+        colour=LENGTH_COLOUR,
+    ),
+    Layer(
         name="reference",
         title="Reference",
-        hint="The mesh given with --reference, to look at; nothing is computed from it",
+        hint="The mesh given with --reference, in its attitude",
         colour=REFERENCE_COLOUR,
+        is_on=False,
+    ),
+    Layer(
+        name="distance",
+        title="Distance",
+        hint="The hull, coloured by its signed distance from the reference: blue inside it, red "
+        "outside. It belongs to the hull that was last compared",
+        colour=OUTSIDE_COLOUR,
         is_on=False,
     ),
 )

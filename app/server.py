@@ -7,7 +7,6 @@ import webbrowser
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-import trimesh
 import uvicorn
 from fastapi import FastAPI
 
@@ -16,12 +15,15 @@ from app.gate import LOOPBACK_NAMES
 from app.key_points import KeyPoints
 from app.measuring import MeasurementDesk
 from app.playback import DEFAULT_SPEED_HZ, Playback
+from app.reference import Reference, ReferenceDesk
 from app.source import Source
 from app.stream import LiveStream, SurfaceOf
 from app.uncarved import UncarvedWatch
 from app.viewport import Viewport
 from app.viewport_key_points import KeyPointNodes
+from app.viewport_measurements import MeasurementDrawing
 from app.viewport_pages import ViewportPages
+from app.viewport_picking import Pickers
 from app.viser_server import PrivateViserServer
 from app.web import create_app
 from core.hull.volume import VoteVolume
@@ -41,7 +43,7 @@ def serve(
     open_browser: bool = False,
     settings: ReconstructionSettings | None = None,
     speed_hz: float | None = DEFAULT_SPEED_HZ,
-    reference: trimesh.Trimesh | None = None,
+    reference: Reference | None = None,
 ) -> None:
     """Show the reconstruction of `source` in a browser until SIGINT or SIGTERM.
 
@@ -54,7 +56,7 @@ def serve(
         open_browser: whether to open the page in the user's browser.
         settings: how the hull is reconstructed.
         speed_hz: frames per second to start with, None for as fast as they are computed.
-        reference: a mesh in metres of the target frame, to look at beside the hull.
+        reference: a body to look at beside the hull, and to compare it with.
 
     Raises:
         ValueError: the host is not a loopback address, the port is in use or forbidden, or the
@@ -89,12 +91,12 @@ def workstation(
     *,
     playback: Playback | None = None,
     surface_of: SurfaceOf = VoteVolume.surface,
-    reference: trimesh.Trimesh | None = None,
+    reference: Reference | None = None,
 ) -> Iterator[FastAPI]:
     """Run the live loop and the viewport, and give the application that shows them."""
     stream = LiveStream(source, settings, playback=playback, surface_of=surface_of)
     viser_server = PrivateViserServer()
-    viewport = Viewport(viser_server, reference=reference)
+    viewport = Viewport(viser_server, reference=None if reference is None else reference.surface)
     key_points = KeyPoints(lambda: stream.source.key)
     uncarved = UncarvedWatch(lambda: stream.volume, viewport.show_uncarved)
     desk = MeasurementDesk(stream)
@@ -112,6 +114,11 @@ def workstation(
         stream.observe(key_points.note)
         key_points.observe(KeyPointNodes(viser_server).show)
         key_points.observe(lambda now: desk.set_key_points(now.places_m, now.covariances_m2))
+        _add_picking(app, stream, pages, desk)
+        _add_reference(app, stream, viewport, reference)
+        drawing = MeasurementDrawing(viser_server, desk)
+        stream.observe(drawing.note)
+        desk.observe(drawing.show)
         stream.start()
         desk.start()
         yield app
@@ -120,6 +127,35 @@ def workstation(
         uncarved.stop()
         stream.stop()
         viser_server.stop()
+
+
+def _add_picking(
+    app: FastAPI, stream: LiveStream, pages: ViewportPages, desk: MeasurementDesk
+) -> None:
+    """Let pages pick on the hull, and tell in the state what they are about to measure."""
+    pickers = Pickers(pages, lambda: stream.snapshot.surface, desk, app.state.changes.notify)
+    app.state.pickers = pickers
+    stream.also_told["picking"] = pickers.facts
+    stream.observe(pickers.note)
+
+
+def _add_reference(
+    app: FastAPI, stream: LiveStream, viewport: Viewport, reference: Reference | None
+) -> None:
+    """Let pages ask how the hull agrees with the reference, where there is one."""
+    app.state.reference_desk = None
+    if reference is None:
+        return
+    desk = ReferenceDesk(
+        reference.surface,
+        lambda: stream.snapshot,
+        viewport.show_distances,
+        app.state.changes.notify,
+        is_closed=reference.is_closed,
+    )
+    app.state.reference_desk = desk
+    stream.also_told["reference"] = desk.facts
+    stream.observe(desk.note)
 
 
 class WorkstationServer(uvicorn.Server):

@@ -91,3 +91,15 @@ class SurfaceNode:
             cast_shadow=False,
             receive_shadow=False,
         )
+
+
+def lifted(surface: Surface, by_m: float) -> Surface:
+    """Return a surface a little outside itself, so that it hides what it was lifted off."""
+    a, b, c = (surface.vertices_m[surface.faces[:, corner]] for corner in range(3))
+    across = np.cross(b - a, c - a)
+    normals = np.zeros_like(surface.vertices_m)
+    for corner in range(3):
+        np.add.at(normals, surface.faces[:, corner], across)
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    unit = normals / np.where(lengths > 0, lengths, 1.0)
+    return Surface(vertices_m=surface.vertices_m + by_m * unit, faces=surface.faces)

@@ -4,7 +4,6 @@ import threading
 from typing import Literal
 
 import numpy as np
-import trimesh
 import viser
 
 from app.camera import HOME_DIRECTION, UP, home_camera
@@ -20,6 +19,8 @@ from app.layers import (
 )
 from app.picture_plane import picture_plane
 from app.pictures import SHOWN_FLOOR_DB, translucent_picture
+from app.reference import Compared
+from app.reference_glb import coloured_glb
 from app.snapshot import Record, Snapshot
 from app.surface_node import SurfaceNode
 from app.viewport_parts import PartNodes
@@ -52,9 +53,7 @@ class Viewport:
     below the node of its layer, which pages show and hide each for itself.
     """
 
-    def __init__(
-        self, server: viser.ViserServer, *, reference: trimesh.Trimesh | None = None
-    ) -> None:
+    def __init__(self, server: viser.ViserServer, *, reference: Surface | None = None) -> None:
         """Set up a scene that holds nothing but the reference, in metres of the target frame."""
         self._server = server
         # Snapshots come from the live loop, wishes for layers from pages.
@@ -77,7 +76,7 @@ class Viewport:
         )
         if reference is not None:
             node = SurfaceNode(server, "/reference/mesh", colour=REFERENCE_COLOUR, opacity=0.4)
-            node.show(Surface(vertices_m=reference.vertices, faces=reference.faces))
+            node.show(reference)
         self._picture = server.scene.add_image(
             "/picture/image",
             np.zeros((2, 2, 4), dtype=np.uint8),
@@ -120,6 +119,19 @@ class Viewport:
         """Show the space that few views have carved away."""
         with self._lock, self._server.atomic():
             self._uncarved.show(surface if "uncarved" in self._wanted else None)
+        self._server.flush()
+
+    def show_distances(self, compared: Compared | None) -> None:
+        """Show a hull in the colours of its distances from the reference, or take it off."""
+        with self._lock, self._server.atomic():
+            self._server.scene.remove_by_name("/distance/surface")
+            if compared is not None:
+                self._server.scene.add_glb(
+                    "/distance/surface",
+                    coloured_glb(compared),
+                    cast_shadow=False,
+                    receive_shadow=False,
+                )
         self._server.flush()
 
     def _resize(self, side_m: float) -> None:

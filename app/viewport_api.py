@@ -13,6 +13,7 @@ from app.components import colours_of
 from app.layers import (
     FIRST_LAYERS,
     LAYERS,
+    REFERENCE_LAYERS,
     Layer,
     css,
     known_layers,
@@ -66,7 +67,9 @@ def read_choices(stream: Stream, pages: Pages) -> dict[str, Any]:
     """Return the layers, the named views, and the colours of the hull's components."""
     snapshot = stream.snapshot
     colours = colours_of(snapshot)
-    offered = [layer for layer in LAYERS if layer.name != "reference" or pages.has_reference]
+    offered = [
+        layer for layer in LAYERS if layer.name not in REFERENCE_LAYERS or pages.has_reference
+    ]
     return {
         "layers": [_layer_facts(layer) for layer in offered],
         "views": [{"name": view.name, "hint": view.hint} for view in VIEWS.values()],

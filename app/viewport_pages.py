@@ -12,6 +12,9 @@ from app.camera import Camera
 from app.layers import FIRST_LAYERS, LAYERS
 from app.viser_server import PrivateViserServer
 
+Listener = Callable[[str, viser.ClientHandle | None], None]
+"""Called with a page's name and the viser client that it now has, None once that is gone."""
+
 MOST_REMEMBERED = 64
 """Pages whose layers are kept; a page that comes back from a lost connection finds them again."""
 
@@ -52,8 +55,13 @@ class ViewportPages:
         self._lock = threading.RLock()
         self._pages: dict[str, _Page] = {}
         self._wanted: frozenset[str] = frozenset()
+        self._listeners: list[Listener] = []
         server.on_client_connect(self._come)
         server.on_client_disconnect(self._go)
+
+    def listen(self, listener: Listener) -> None:
+        """Call `listener` whenever a page's viser client has come or gone."""
+        self._listeners.append(listener)
 
     def layers(self, name: str) -> frozenset[str]:
         """Return the layers that a page shows."""
@@ -117,13 +125,20 @@ class ViewportPages:
             self._apply_layers(page)
             self._apply_camera(page)
             self._tell_wanted()
+        self._tell_listeners(name, client)
 
     def _go(self, client: viser.ClientHandle) -> None:
         with self._lock:
-            for page in self._pages.values():
-                if page.client is client:
-                    page.client, page.groups = None, {}
+            left = [name for name, page in self._pages.items() if page.client is client]
+            for name in left:
+                self._pages[name].client, self._pages[name].groups = None, {}
             self._tell_wanted()
+        for name in left:
+            self._tell_listeners(name, None)
+
+    def _tell_listeners(self, name: str, client: viser.ClientHandle | None) -> None:
+        for listener in self._listeners:
+            listener(name, client)
 
     def _apply_layers(self, page: _Page) -> None:
         if page.client is None:

@@ -6,11 +6,15 @@ from typing import Annotated
 import tyro
 
 from app.commands.options import Carving, CarvingOptions, OptionalFile
+from app.reference import Reference, reference_of
 from app.server import DEFAULT_PORT
 from app.server import serve as serve_source
 from app.source import NO_SOURCE, Source
 from app.sources import demo_source, pass_sources
 from core.formats.meshes import read_mesh
+
+Attitude = Annotated[tuple[float, float, float, float], tyro.conf.arg(metavar="W X Y Z")]
+Offset = Annotated[tuple[float, float, float], tyro.conf.arg(metavar="X Y Z")]
 
 WORKSTATION_CARVING = Carving(spacing_m=0.2)
 """Coarser than the other commands: the hull is meshed anew with every frame that arrives."""
@@ -28,6 +32,8 @@ def serve(
     empty: bool = False,
     open: bool = False,  # noqa: A002 - the flag's name on the command line
     reference: OptionalFile = None,
+    reference_attitude: Attitude = (1.0, 0.0, 0.0, 0.0),
+    reference_offset: Offset = (0.0, 0.0, 0.0),
     carving: CarvingOptions = WORKSTATION_CARVING,
 ) -> None:
     """Serve the workstation on one page of this machine.
@@ -37,8 +43,9 @@ def serve(
         port: port on 127.0.0.1; 0 takes any free one.
         empty: begin without a source; the page loads the demo or a pass file that is dropped on it.
         open: also open the page in the browser.
-        reference: a mesh (GLB, PLY, OBJ, STL) in metres of the target frame, to look at beside
-            the hull; nothing is computed from it.
+        reference: a mesh (GLB, PLY, OBJ, STL) in metres, to see and to compare the hull with.
+        reference_attitude: quaternion w x y z that turns the mesh's axes to the target frame's.
+        reference_offset: x y z in metres by which it is then moved.
         carving: how the hull is carved.
     """
     settings = carving.settings()
@@ -54,8 +61,16 @@ def serve(
         port=port,
         open_browser=open,
         settings=settings,
-        reference=None if reference is None else read_mesh(reference),
+        reference=_reference(reference, reference_attitude, reference_offset),
     )
+
+
+def _reference(
+    file: Path | None,
+    attitude: tuple[float, float, float, float],
+    offset: tuple[float, float, float],
+) -> Reference | None:
+    return None if file is None else reference_of(read_mesh(file), attitude, offset)
 
 
 def _source(pass_file: Path | None) -> Source:

@@ -44,8 +44,9 @@ def points_within_m(surface: Surface, centre_m: Floats, radius_m: float) -> Floa
     """
     beside = surface.vertices_m - centre_m
     inside = np.einsum("ij,ij->i", beside, beside) <= radius_m**2
-    of_faces = inside[surface.faces]
-    touched = surface.faces[of_faces.any(axis=1) & ~of_faces.all(axis=1)]
+    # Corner by corner: NumPy reduces rows of three several times as slowly.
+    a, b, c = (inside[surface.faces[:, corner]] for corner in range(3))
+    touched = surface.faces[(a | b | c) & ~(a & b & c)]
     edges = np.concatenate([touched[:, [i, j]] for i in range(3) for j in range(3) if i != j])
     edges = edges[inside[edges[:, 0]] & ~inside[edges[:, 1]]]
     start, step = beside[edges[:, 0]], beside[edges[:, 1]] - beside[edges[:, 0]]

@@ -13,12 +13,14 @@ import { Loading } from "./loading.js";
 import { Measurements } from "./measurements.js";
 import { Parts } from "./parts.js";
 import { showParts } from "./parts-view.js";
+import { Picking } from "./picking.js";
 import { Proposals } from "./proposals.js";
 import { showSaved } from "./saved-view.js";
 import { Review } from "./review.js";
 import { download, fileName } from "./screenshot.js";
 import { KeyPoints } from "./key-points.js";
 import { getJson, keepLinked, send } from "./server.js";
+import { ReferenceView } from "./reference-view.js";
 import { RightPane } from "./right-pane.js";
 import { bindShortcuts, fillSheet } from "./shortcuts.js";
 import { Share } from "./share.js";
@@ -172,6 +174,8 @@ const loading = new Loading({
 const exporting = new ExportMenu(part("export-menu"), part("export-note"));
 
 const space = new SpaceView(complain);
+const picking = new Picking(space, complain);
+const reference = new ReferenceView(space, complain);
 const share = new Share(space, panel, { showFrame, complain });
 
 async function command(method, path, body) {
@@ -231,6 +235,8 @@ function showState(next) {
   keyPoints.update(state);
   parts.update(state);
   space.update(state);
+  picking.update(state);
+  reference.update(state);
   share.update(state);
   bringFrame();
 }
@@ -393,11 +399,11 @@ function toggleExcluded() {
 }
 
 function enter() {
-  if (!proposals.apply() && !editor.accept()) review.accept();
+  if (!picking.finish() && !proposals.apply() && !editor.accept()) review.accept();
 }
 
 function escape() {
-  if (!editor.cancel() && !proposals.discard()) editor.choose("vertex");
+  if (!picking.stop() && !editor.cancel() && !proposals.discard()) editor.choose("vertex");
 }
 
 const chooseTool = (name) => () => {
@@ -416,7 +422,8 @@ bindShortcuts(
     ...named(drawing, chooseTool),
     ...named(proposing, (key) => () => proposals.choose(key)),
     ...named(reviewing, (name) => () => review.set(name)),
-    delete: () => editor.remove(),
+    delete: () => picking.takeBack() || editor.remove(),
+    pick: () => picking.toggle(),
     smaller: () => toolbar.scaleBrush(1 / 1.25),
     larger: () => toolbar.scaleBrush(1.25),
     claim: () => toolbar.toggleClaim(),
@@ -459,6 +466,7 @@ part("open-sheet").addEventListener("click", openSheet);
 part("stop-imaging").addEventListener("click", () => command("POST", "/api/playback", { action: "pause" }));
 loading.takeDropsOn(part("viewport"));
 listenInSpace(part("viewport"), (event) => {
+  if (picking.onKeyInSpace(event)) return;
   if (event.key === "Escape") part("frame-canvas").focus();
   else transport.onKeyInSpace(event);
 });

@@ -58,6 +58,12 @@ const GROUPS = [
   ]],
   ["Measurements", [
     ["measure", "N", ["n"], "Add a measurement that needs no pick"],
+    ["pick", "M", ["m"], "Measure by clicks on the hull, or stop"],
+    [null, "Shift click", [], "While measuring: the farthest point near there"],
+    [null, "Ctrl click", [], "The nearest end of the part"],
+    [null, "Enter", [], "End a polyline"],
+    [null, "Backspace", [], "Take the last point back"],
+    [null, "Esc", [], "Stop measuring"],
   ]],
   ["Playback and space", [
     [null, "Space", [], "Play or pause"],

@@ -18,6 +18,9 @@ export class SpaceView {
   #canDraw;
   #ready;
 
+  /** Is called whenever other layers are on show. */
+  onLayers = () => {};
+
   /** Load the view, and call `complain(sentence)` for what is refused. */
   constructor(complain) {
     this.#complain = complain;
@@ -28,6 +31,11 @@ export class SpaceView {
     part("space-picture").disabled = !this.#canDraw;
     part("space-picture").addEventListener("click", () => this.savePicture());
     this.#ready = this.#offer().catch((error) => complain(error.message));
+  }
+
+  /** What the server calls this page. */
+  get name() {
+    return NAME;
   }
 
   /** The layers on show, in the order of their buttons. */
@@ -135,6 +143,13 @@ export class SpaceView {
     return button;
   }
 
+  /** Put a layer on show, or take it off. */
+  showLayer(name, isOn) {
+    if (isOn) this.#layers?.add(name);
+    else this.#layers?.delete(name);
+    return this.#sendLayers();
+  }
+
   async #sendLayers() {
     this.#showPressed();
     await send("PUT", `/api/viewport/${NAME}/layers`, { layers: this.layers })
@@ -142,6 +157,7 @@ export class SpaceView {
   }
 
   #showPressed() {
+    this.onLayers();
     for (const button of part("space-layers").querySelectorAll("button")) {
       button.ariaPressed = String(this.#layers.has(button.dataset.layer));
     }

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from app.playback import Playback
+from app.reference import Reference
 from app.server import WorkstationServer, listening_socket, workstation
 from app.source import Source
 from core.reconstruction import ReconstructionSettings
@@ -17,13 +18,18 @@ Result = TypeVar("Result")
 
 @contextmanager
 def running(
-    source: Source, settings: ReconstructionSettings, playback: Playback, *, port: int = 0
+    source: Source,
+    settings: ReconstructionSettings,
+    playback: Playback,
+    *,
+    port: int = 0,
+    reference: Reference | None = None,
 ) -> Iterator[str]:
     """Serve `source` and give the page's address, without the last slash."""
     ready = threading.Event()
     with (
         listening_socket("127.0.0.1", port) as listener,
-        workstation(source, settings, playback=playback) as app,
+        workstation(source, settings, playback=playback, reference=reference) as app,
     ):
         address = f"http://127.0.0.1:{listener.getsockname()[1]}"
         server = WorkstationServer(app, ready.set)

@@ -450,3 +450,10 @@ def test_the_workstation_begins_with_a_pass_or_without(capsys):
 
 def test_a_reference_that_is_no_mesh_is_named_before_anything_starts(capsys, tmp_path) -> None:
     assert "There is no mesh file" in refused(capsys, "serve", "--reference", tmp_path / "a.stl")
+
+
+def test_a_references_attitude_that_turns_nothing_is_refused(capsys, tmp_path) -> None:
+    file = tmp_path / "box.stl"
+    trimesh.creation.box((1.0, 1.0, 1.0)).export(file)
+    options = ["--reference", file, "--reference-attitude", "0", "0", "0", "0"]
+    assert "--reference-attitude wants a quaternion w x y z" in refused(capsys, "serve", *options)

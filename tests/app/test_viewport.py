@@ -1,3 +1,4 @@
+import io
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -6,11 +7,14 @@ import pytest
 import trimesh
 
 from app.layers import COMPONENT_COLOURS
+from app.reference import compared
+from app.reference_glb import coloured_glb
 from app.snapshot import Record, Snapshot
 from app.viewport import Viewport
 from app.viser_server import PrivateViserServer
 from core.analysis.analysis import Analysis
 from tests.app.synthetic import SETTINGS, frames
+from tests.measurement.bodies import box, surface_of
 
 
 @pytest.fixture
@@ -124,13 +128,29 @@ def test_parts_show_in_their_colours_within_a_hull_that_lets_them_through(viewpo
 
 def test_a_reference_stands_where_its_mesh_does() -> None:
     server = PrivateViserServer()
-    box = trimesh.creation.box((3.0, 2.0, 1.0))
-    Viewport(server, reference=box)
+    body = trimesh.creation.box((3.0, 2.0, 1.0))
+    Viewport(server, reference=surface_of(body))
     (mesh,) = [
         m
         for m in server._websock_server._broadcast_buffer.message_from_id.values()
         if getattr(m, "name", "") == "/reference/mesh" and hasattr(m, "props")
     ]
-    np.testing.assert_array_equal(mesh.props.vertices, box.vertices.astype(np.float32))
+    np.testing.assert_array_equal(mesh.props.vertices, body.vertices.astype(np.float32))
     assert mesh.props.opacity < 1
     server.stop()
+
+
+def test_a_compared_hull_is_shown_in_its_colours_until_it_is_taken_off(viewport) -> None:
+    hull = box((4.0, 2.0, 1.0), fineness=2)
+    done = compared(hull, box((3.8, 2.0, 1.0)), revision=1, spacing_m=0.1)
+    viewport.show_distances(done)
+    scene = viewport._server.scene
+    assert scene.get_handle_by_name("/distance/surface") is not None
+    (mesh,) = trimesh.load(io.BytesIO(coloured_glb(done)), file_type="glb").geometry.values()
+    outside = mesh.vertices[:, 0] > 2.0
+    # #b2182b, in proportion to light.
+    red = mesh.visual.vertex_attributes["color"][:, :3] == [114, 2, 6]
+    assert np.all(red[outside])
+    assert mesh.visual.material.metallicFactor == 0
+    viewport.show_distances(None)
+    assert scene.get_handle_by_name("/distance/surface") is None

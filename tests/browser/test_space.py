@@ -66,7 +66,7 @@ def press(page: Page, *names: str) -> None:
 
 def shown_alone(page: Page) -> dict[str, np.ndarray]:
     """Each layer's picture with all others off, which is how the page is left."""
-    press(page, "hull", "picture", "outline", "sights", "grid")
+    press(page, "hull", "picture", "outline", "sights", "grid", "measurements")
     until(page, is_uniform)
     alone = {}
     for name in ("hull", "wireframe", "picture", "outline", "sights", "grid", "uncarved"):
