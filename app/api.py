@@ -126,7 +126,8 @@ async def _until_hung_up(page: WebSocket) -> None:
 
 def state_of(stream: LiveStream) -> dict[str, Any]:
     """Return what the workstation shows now."""
-    return state_facts(stream.snapshot, stream.source)
+    facts = state_facts(stream.snapshot, stream.source)
+    return facts | {name: tell() for name, tell in stream.also_told.items()}
 
 
 def facts_of(stream: LiveStream, number: int) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from fastapi import FastAPI
 
 from app.compilation import compiling
 from app.gate import LOOPBACK_NAMES
+from app.measuring import MeasurementDesk
 from app.playback import DEFAULT_SPEED_HZ, Playback
 from app.source import Source
 from app.stream import LiveStream, SurfaceOf
@@ -93,6 +94,7 @@ def workstation(
     viser_server = PrivateViserServer()
     viewport = Viewport(viser_server, reference=reference)
     uncarved = UncarvedWatch(lambda: stream.volume, viewport.show_uncarved)
+    desk = MeasurementDesk(stream)
 
     def want(layers: frozenset[str]) -> None:
         viewport.want(layers)
@@ -100,12 +102,15 @@ def workstation(
 
     pages = ViewportPages(viser_server, want, has_reference=reference is not None)
     try:
-        app = create_app(stream, viser_server.address, pages)
+        app = create_app(stream, viser_server.address, pages, desk)
         stream.observe(viewport.show)
         stream.observe(uncarved.note)
+        stream.observe(desk.note)
         stream.start()
+        desk.start()
         yield app
     finally:
+        desk.stop()
         uncarved.stop()
         stream.stop()
         viser_server.stop()

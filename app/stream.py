@@ -51,6 +51,8 @@ class LiveStream:
             ValueError: a grid too large.
         """
         self.source = source
+        self.also_told: dict[str, Callable[[], object]] = {}
+        """What others tell beside the snapshot, as JSON values, by its name in the state."""
         self._playback = playback or Playback()
         self._surface_of = surface_of
         self._analysis = Analysis(settings, surface_of=surface_of)

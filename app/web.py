@@ -22,6 +22,7 @@ from app import (
 )
 from app.changes import Changes
 from app.gate import LOOPBACK_NAMES, Gate
+from app.measuring import MeasurementDesk
 from app.relay import relay
 from app.stream import LiveStream
 from app.thumbnails import Thumbnails
@@ -35,6 +36,7 @@ def create_app(
     stream: LiveStream,
     viewport: ViserAddress,
     pages: ViewportPages,
+    desk: MeasurementDesk,
     *,
     host_names: Iterable[str] = LOOPBACK_NAMES,
 ) -> FastAPI:
@@ -44,6 +46,7 @@ def create_app(
         stream: the live loop; whoever made it starts and stops it.
         viewport: where viser listens.
         pages: whose cameras and layers can be set.
+        desk: at which the hull is measured; whoever made it starts and stops it.
         host_names: names under which browsers may address the server.
     """
     app = FastAPI(title="radarhull", docs_url=None, redoc_url=None, openapi_url="/openapi.json")
@@ -52,6 +55,8 @@ def create_app(
     app.state.thumbnails = Thumbnails()
     stream.observe(lambda _: app.state.changes.notify())
     app.state.viewport_pages = pages
+    app.state.desk = desk
+    desk.observe(lambda _: app.state.changes.notify())
     for part in (
         api,
         course_api,
