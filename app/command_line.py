@@ -10,6 +10,7 @@ from app.commands.bench import bench
 from app.commands.experiment import experiment
 from app.commands.image import image
 from app.commands.import_ import import_
+from app.commands.measure import measure
 from app.commands.reconstruct import reconstruct
 from app.commands.serve import serve
 from app.commands.simulate import simulate
@@ -25,6 +26,7 @@ _COMMANDS: dict[str, Callable[..., None]] = {
     "import": import_,
     "image": image,
     "reconstruct": reconstruct,
+    "measure": measure,
     "experiment": experiment,
     "bench": bench,
 }

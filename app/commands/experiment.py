@@ -16,6 +16,8 @@ from app.commands.options import (
     checked_snr_db,
 )
 from app.commands.outputs import checked_folder, checked_json, show_results, write_json
+from core.experiments.measurement.run import PARTS as MEASUREMENT_PARTS
+from core.experiments.measurement.run import run_measurement
 from core.experiments.physics.run import PARTS, run_physics
 from core.experiments.pictures import write_pictures
 from core.experiments.report import write_report
@@ -23,7 +25,7 @@ from core.experiments.results import Results
 from core.experiments.temple import run_temple
 from core.experiments.wide import run_wide
 
-Experiment = Literal["wide", "temple", "physics"]
+Experiment = Literal["wide", "temple", "physics", "measurement"]
 
 
 def experiment(
@@ -45,23 +47,28 @@ def experiment(
     lengths, by the shadow rule and by the paper's strict rule. temple: the hull of a real object
     from 16 calibrated photographs (Middlebury templeSparseRing). physics: scattering, coherent
     intervals, imaging, focusing, registration and optics against theory and measured data.
+    measurement: lengths and attitude of two known targets from exact outlines and from echoes, how
+    often intervals hold the truth, and key points against noise (some five minutes).
 
     Args:
         name: which experiment.
         json: write settings and figures as JSON to this file, or to standard output for "-".
         data: folder of the photographs (temple), or of the measured Gotcha history (physics).
-        out: folder to write results.json, report.html and the pictures into (physics only).
-        part: parts of the physics to run, all by default (physics only).
+        out: folder to write results.json, report.html and the pictures into (physics and
+            measurement).
+        part: parts of the physics or the measurement to run, all by default.
         views: number of views (wide only; 80 by default).
         spacing_m: voxel spacing in metres; 0.15 (wide) or 0.0005 (temple) by default.
         snr_db: signal-to-noise ratio per pulse and frequency sample (wide only; 20 dB by default).
         seed: of the random generator (wide only; 1 by default).
     """
     checked_json(json)
-    if name == "physics":
+    if name in ("physics", "measurement"):
         _refuse_foreign(name, {"--views": views, "--spacing-m": spacing_m, "--snr-db": snr_db})
         _refuse_foreign(name, {"--seed": seed})
-        _physics(part, data, out, json)
+        if name == "measurement":
+            _refuse_foreign(name, {"--data": data})
+        _pictured(name, part, data, out, json)
         return
     _refuse_foreign(name, {"--out": out, "--part": part or None})
     if name == "wide":
@@ -91,13 +98,20 @@ def _wide(settings: Mapping[str, Any], report: Report) -> Results:
     return run_wide(**chosen, progress=report)
 
 
-def _physics(
-    parts: tuple[str, ...], gotcha: Path | None, out: Path | None, json: str | None
+def _pictured(
+    name: Experiment,
+    parts: tuple[str, ...],
+    gotcha: Path | None,
+    out: Path | None,
+    json: str | None,
 ) -> None:
     if out is not None:
         checked_folder(out)
     with progress_bars() as report:
-        results, pictures = run_physics(parts=parts or PARTS, gotcha=gotcha, progress=report)
+        if name == "measurement":
+            results, pictures = run_measurement(parts=parts or MEASUREMENT_PARTS, progress=report)
+        else:
+            results, pictures = run_physics(parts=parts or PARTS, gotcha=gotcha, progress=report)
     if out is not None:
         write_pictures(pictures, out)
         write_report(out / "report.html", results, pictures)

@@ -67,7 +67,7 @@ def pass_track(observation: Observation, waveform: Waveform) -> LineOfSightTrack
     found = passes(
         satellite,
         station,
-        start_utc=_utc(observation.start),
+        start_utc=utc_time(observation.start),
         duration_s=SEARCH_DAYS * 86400.0,
         elevation_mask_rad=float(np.deg2rad(observation.mask_deg)),
     )
@@ -109,7 +109,12 @@ def observed_satellite(observation: Observation) -> EarthSatellite:
     )
 
 
-def _utc(text: str) -> datetime:
+def utc_time(text: str) -> datetime:
+    """Return the time that a text in ISO 8601 means; without a zone it is UTC.
+
+    Raises:
+        ValueError: no such time.
+    """
     try:
         when = datetime.fromisoformat(text)
         return when.replace(tzinfo=UTC) if when.tzinfo is None else when.astimezone(UTC)

@@ -101,11 +101,24 @@ def exact_views(
 
 
 def carved(
-    target: Target, views: Sequence[View], *, spacing_m: float, method: Method = "dual"
+    target: Target,
+    views: Sequence[View],
+    *,
+    spacing_m: float,
+    method: Method = "dual",
+    margin_m: float | None = None,
 ) -> Surface:
-    """Return the hull's surface that views carve on a grid around the target."""
+    """Return the hull's surface that views carve on a grid around the target.
+
+    Args:
+        target: around which the grid is laid.
+        views: as they vote.
+        spacing_m: voxel spacing.
+        method: how the hull is meshed.
+        margin_m: by how much the grid reaches beyond the target; a few voxels unless given.
+    """
     lower, upper = target.mesh().bounds
-    margin_m = MARGIN_VOXELS * spacing_m
+    margin_m = MARGIN_VOXELS * spacing_m if margin_m is None else margin_m
     grid = VoxelGrid.over(lower_m=lower - margin_m, upper_m=upper + margin_m, spacing_m=spacing_m)
     volume = VoteCounts(grid)
     for view in views:
@@ -148,7 +161,14 @@ def mro_features() -> tuple[KnownFeature, ...]:
     return tuple(features)
 
 
-def accuracy(title: str, features: Sequence[KnownFeature], surface: Surface) -> list[Figure]:
+def accuracy(
+    title: str,
+    features: Sequence[KnownFeature],
+    surface: Surface,
+    *,
+    length_wanted: str | None = LENGTH_WANTED,
+    attitude_wanted: str | None = ATTITUDE_WANTED,
+) -> list[Figure]:
     """Return the errors of a hull's measurements, as figures; what is lost misses its target."""
     figures = []
     results = measure_all([feature.spec for feature in features], surface)
@@ -162,10 +182,10 @@ def accuracy(title: str, features: Sequence[KnownFeature], surface: Surface) -> 
         if feature.value is not None:
             size = None if error is None else abs(error)
             figures.append(
-                Figure(name=f"{name}: error", value=size, unit="%", wanted=LENGTH_WANTED)
+                Figure(name=f"{name}: error", value=size, unit="%", wanted=length_wanted)
             )
         figures.append(
-            Figure(name=f"{name}: attitude error", value=angle, unit="°", wanted=ATTITUDE_WANTED)
+            Figure(name=f"{name}: attitude error", value=angle, unit="°", wanted=attitude_wanted)
         )
     return figures
 

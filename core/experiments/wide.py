@@ -103,6 +103,9 @@ def simulated_frames(
     signal_to_noise_db: float,
     random: np.random.Generator,
     tracking_error_m: Floats | None = None,
+    waveform: Waveform | None = None,
+    imaging: ImagingSettings | None = None,
+    pulses_per_view: int = 256,
     progress: Progress = lambda _stage, _done, _total: None,
 ) -> list[Frame]:
     """Return radar frames of a target from random directions, imaged from simulated echoes.
@@ -115,15 +118,18 @@ def simulated_frames(
         random: for directions, scatterers and noise.
         tracking_error_m: (views, 2) how far in range and cross-range every view's echoes are off
             what its projection says.
+        waveform: with samples enough for the target's size; the usual one unless given.
+        imaging: with images large enough for it; the usual unless given.
+        pulses_per_view: enough for its size across the line of sight.
         progress: told of stage, steps done and steps in all.
     """
-    waveform = Waveform()
-    imaging = ImagingSettings()
+    waveform = waveform or Waveform()
+    imaging = imaging or ImagingSettings()
     points = surface_scatterers(target, count=scatterers, random=random)
     track = random_views_track(
         views=views,
         turn_rad=waveform.wavelength_m / (2 * imaging.cross_range_resolution_m),
-        pulses_per_view=256,
+        pulses_per_view=pulses_per_view,
         pulse_repetition_frequency_hz=waveform.pulse_repetition_frequency_hz,
         random=random,
     )

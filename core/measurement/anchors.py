@@ -8,7 +8,7 @@ import numpy as np
 
 from core.arrays import Floats, frozen
 from core.hull.closed_mesh import Surface
-from core.measurement.parts import body_axes, part_of_face, surface_of_faces
+from core.measurement.parts import body_axes, part_at
 from core.measurement.picking import first_hit_m, nearest_point_m, points_within_m
 
 NO_KEY_POINTS: Mapping[str, Floats] = MappingProxyType({})
@@ -227,7 +227,7 @@ def _middle(points: Floats, direction: Floats) -> Floats:
 
 
 def _part_end(anchor: PartEnd, surface: Surface, face: int) -> Floats | AnchorLost:
-    body = body_axes(surface_of_faces(surface, part_of_face(surface, face)))
+    body = body_axes(part_at(surface, face))
     cosines = body.axes @ anchor.toward
     axis = int(np.argmax(np.abs(cosines)))
     reach = body.upper_m[axis] if cosines[axis] >= 0 else body.lower_m[axis]

@@ -6,6 +6,7 @@ import numpy as np
 
 from core.arrays import Floats, frozen
 from core.hull.surface import Surface
+from core.measurement.moments import add_moments
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -46,7 +47,7 @@ def principal_lines(surface: Surface, names: tuple[str, str, str]) -> tuple[Line
     if surface.is_empty:
         raise ValueError("The hull is empty, so nothing can be measured; lower the threshold.")
     _, axes = np.linalg.eigh(body_covariance_m5(surface)[1])
-    extents = np.ptp(surface.vertices_m @ axes, axis=0)
+    extents = np.ptp(axes.T @ surface.vertices_m.T, axis=1)
     order = np.argsort(extents)[::-1]
     return tuple(
         LineMeasurement(name=name, length_m=float(extents[axis]), direction=axes[:, axis])
@@ -63,13 +64,10 @@ def body_covariance_m5(surface: Surface) -> tuple[Floats, Floats]:
         ValueError: the surface encloses nothing.
     """
     middle = surface.vertices_m.mean(axis=0)
-    points = surface.vertices_m - middle
-    a, b, c = (points[surface.faces[:, corner]] for corner in range(3))
-    sixfold = np.einsum("ij,ij->i", a, np.cross(b, c))
-    total = a + b + c
-    corners = (a, b, c, total)
-    about_mean = sum(part.T @ (part * sixfold[:, None]) for part in corners) / 120
-    volume, moment = sixfold.sum() / 6, sixfold @ total / 24
+    sums = np.zeros(10)
+    add_moments(surface.vertices_m, surface.faces, *map(float, middle), sums)
+    volume, moment = float(sums[0]) / 6, sums[1:4] / 24
+    about_mean = sums[[4, 5, 6, 5, 7, 8, 6, 8, 9]].reshape(3, 3) / 120
     if not volume > 0:
         raise ValueError(
             f"The surface encloses {volume:.3g} m³, so it has no centroid; it must be closed and "

@@ -13,7 +13,7 @@ from core.measurement import specs as kinds
 from core.measurement.anchors import Anchor, AnchorLost, place_text, resolve
 from core.measurement.boxes import least_box
 from core.measurement.fits import Fit, cloud_of, fit_cylinder, fit_line, fit_plane
-from core.measurement.parts import Faces, body_axes, surface_of_faces
+from core.measurement.parts import Faces, body_axes, body_of
 from core.measurement.regions import Region, area_vectors_m2, faces_of
 from core.measurement.results import Lost, Measurement
 from core.measurement.sections import section_of
@@ -228,7 +228,7 @@ def _plane_through(spec: kinds.PlaneThrough, job: _Job) -> Measurement:
 
 def _principal_axes(spec: kinds.PrincipalAxes, job: _Job) -> Measurement:
     faces = job.faces(spec.region)
-    body = body_axes(surface_of_faces(job.surface, faces))
+    body = body_axes(body_of(job.surface, faces))
     return Measurement(
         name=spec.name,
         value=float(body.extents_m[0]),
@@ -244,7 +244,7 @@ def _principal_axes(spec: kinds.PrincipalAxes, job: _Job) -> Measurement:
 
 def _box(spec: kinds.BoundingBox | kinds.OrientedBox, job: _Job) -> Measurement:
     faces = job.faces(spec.region)
-    points = surface_of_faces(job.surface, faces).vertices_m
+    points = body_of(job.surface, faces).vertices_m
     if isinstance(spec, kinds.OrientedBox):
         centre, axes, sizes = least_box(points)
     else:
@@ -266,7 +266,7 @@ def _box(spec: kinds.BoundingBox | kinds.OrientedBox, job: _Job) -> Measurement:
 
 def _volume(spec: kinds.Volume, job: _Job) -> Measurement:
     faces = job.faces(spec.region)
-    body = surface_of_faces(job.surface, faces)
+    body = body_of(job.surface, faces)
     return Measurement(name=spec.name, value=body.volume_m3(), unit="m³", support=faces)
 
 

@@ -77,7 +77,7 @@ def test_overlapping_intervals_are_not_focused(capsys, echoes, tmp_path):
     assert "must not overlap" in refused(capsys, "image", echoes, tmp_path / "out.h5", *words)
 
 
-COMMANDS = ("serve", "simulate", "import", "image", "reconstruct", "experiment")
+COMMANDS = ("serve", "simulate", "import", "image", "reconstruct", "measure", "experiment")
 
 
 @pytest.mark.parametrize("command", COMMANDS)
