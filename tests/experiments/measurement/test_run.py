@@ -57,9 +57,3 @@ def test_unknown_names_are_refused():
     with pytest.raises(ValueError, match="no target"):
         case_named("Hubble")
     assert PARTS[0] == "exact"
-
-
-@pytest.mark.slow
-def test_intervals_cover_in_the_whole_command():
-    results, _ = run_measurement(parts=("coverage",))
-    assert [figure.name for figure in results.figures if figure.met is False] == []
