@@ -7,6 +7,7 @@ import { clickDots, frameDots, shape } from "./svg.js";
 const RADIUS = 96;
 const SEEN_DEGREES = 12;
 /** Colours at 0°, 30° and 90° from the nearest image plane; styles/hull.css draws the same scale. */
+/** @type {[number, number[]][]} */
 const STOPS = [[0, [18, 72, 70]], [30, [104, 84, 44]], [90, [255, 180, 84]]];
 
 export class Coverage {
@@ -64,6 +65,7 @@ export class Coverage {
   }
 }
 
+/** @param {number} degrees */
 function colourAt(degrees) {
   const next = STOPS.findIndex(([stop]) => stop >= degrees);
   const [[low, from], [high, to]] = next < 1 ? [STOPS[0], STOPS[1]] : [STOPS[next - 1], STOPS[next]];
@@ -79,10 +81,11 @@ function axisNames() {
   const names = [["x", 0, -RADIUS - 6, "middle"], ["y", RADIUS + 5, 4, "start"], ["z", 5, 12, "start"]];
   return [
     shape("path", { d: "M-4 0h8M0-4v8", class: "ring" }),
-    ...names.map(([name, x, y, anchor]) => shape("text", { x, y, "text-anchor": anchor, class: name }, name)),
+    ...names.map(([name, x, y, anchor]) => shape("text", { x, y, "text-anchor": anchor, class: name }, String(name))),
   ];
 }
 
+/** @param {number[]} place */
 function cross([x, y]) {
   return shape("path", { d: `M${x - 5} ${y - 5}l10 10m0-10l-10 10`, class: "worst" });
 }

@@ -34,8 +34,12 @@ export function fromDisc(right, down) {
   return [-down * stretch, right * stretch, z];
 }
 
-/** Degrees between a direction and the nearest of the image planes whose normals are `blind`. */
-export function degreesFromPlanes([x, y, z], blind) {
+/** Degrees between a direction and the nearest of the image planes whose normals are `blind`.
+ * @param {number[]} direction
+ * @param {number[][]} blind
+ */
+export function degreesFromPlanes(direction, blind) {
+  const [x, y, z] = direction;
   let least = 1;
   for (const [a, b, c] of blind) least = Math.min(least, Math.abs(a * x + b * y + c * z));
   return Math.asin(least) * DEGREES;

@@ -1,9 +1,9 @@
 // Which levels the picture shows and in which colours: kept from frame to frame and over reloads.
 
+import { part } from "./elements.js";
 import { withUnit } from "./numbers.js";
 import { getJson } from "./server.js";
 
-const part = (id) => document.getElementById(id);
 const KEPT = "radarhull.picture";
 const NARROWEST_DB = 5;
 /** Of a frame's own levels: most of the background lies below the first, few peaks above the last. */

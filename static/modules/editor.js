@@ -127,7 +127,7 @@ export class Editor {
         return false;
       },
       move() {},
-      up() {},
+      up(_event) {},
     };
   }
 

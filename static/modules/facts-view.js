@@ -29,13 +29,15 @@ function intervalText(interval) {
   if (!interval) return "";
   const { verdict, reason, start_s: start, stop_s: stop, turn_deg: turn, pulses } = interval;
   const size = [
-    turn != null && `${fixed(turn, 1)}°`,
-    start != null && stop != null && withUnit(stop - start, 1, "s"),
-    pulses != null && `${count(pulses)} pulses`,
+    isGiven(turn) && `${fixed(turn, 1)}°`,
+    isGiven(start) && isGiven(stop) && withUnit(stop - start, 1, "s"),
+    isGiven(pulses) && `${count(pulses)} pulses`,
   ].filter(Boolean).join(", ");
   const why = verdict === "accepted" || !reason ? "" : `: ${keptTogether(reason)}`;
   return `${[verdict, size].filter(Boolean).join(", ")}${why}`;
 }
+
+const isGiven = (value) => value !== null && value !== undefined;
 
 function silhouetteText(frame) {
   const { rings, claim, area_px: area } = frame.silhouette;

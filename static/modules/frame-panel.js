@@ -1,5 +1,6 @@
 // The frame on show: its picture, its outline, and what lies over both.
 
+import { part } from "./elements.js";
 import { frameRows, showNote, showRows } from "./facts-view.js";
 import { FrameView } from "./frame-view.js";
 import { Latest } from "./latest.js";
@@ -10,7 +11,6 @@ import { composed } from "./screenshot.js";
 import { framePath, getJson, getLevels } from "./server.js";
 import { Session } from "./session.js";
 
-const part = (id) => document.getElementById(id);
 const LAYERS = ["ghost", "hull", "shadow"];
 
 export class FramePanel {
@@ -30,7 +30,7 @@ export class FramePanel {
   #rule = "shadow";
   #reprojection = null;
   #seenOverlays = "";
-  #bringing = new Latest((hull) => this.#fetchOverlays(hull), 60);
+  #bringing = new Latest(() => this.#fetchOverlays(), 60);
   #hull = 0;
 
   /**
@@ -66,7 +66,8 @@ export class FramePanel {
 
   /** Draw what lies over the picture, once for all changes of a moment. */
   redraw() {
-    this.#drawing ||= requestAnimationFrame(() => {
+    if (this.#drawing) return;
+    this.#drawing = requestAnimationFrame(() => {
       this.#drawing = 0;
       this.#arrange();
       this.#overlay.draw(this.scene);

@@ -19,7 +19,8 @@ export class Hatcher {
   #scratch = document.createElement("canvas");
 
   /** `parts` is the area first, then what is taken out of it, each [trace, rule of filling]. */
-  draw(context, kind, [[trace, rule], ...taken]) {
+  draw(context, kind, parts) {
+    const [[trace, rule], ...taken] = parts;
     const { canvas } = context;
     const scratch = this.#scratch;
     scratch.width = canvas.width;

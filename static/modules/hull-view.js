@@ -8,9 +8,8 @@ import {
   showRows,
   showUnobserved,
 } from "./facts-view.js";
+import { part } from "./elements.js";
 import { views } from "./numbers.js";
-
-const part = (id) => document.getElementById(id);
 
 /** Show the state's hull in its panel, and name it over the view in space. */
 export function showHull(state) {

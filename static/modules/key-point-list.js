@@ -1,8 +1,7 @@
 // The list of key points: which is active, where each lies, and how well its marks agree.
 
+import { part } from "./elements.js";
 import { fixed, withUnit } from "./numbers.js";
-
-const part = (id) => document.getElementById(id);
 
 export class KeyPointList {
   #points;
@@ -116,7 +115,7 @@ export class KeyPointList {
     part("key-point-length").hidden = placed.length < 2;
     if (placed.length < 2) return;
     const names = placed.map(({ name }) => name);
-    for (const [id, first] of [["key-point-from", 0], ["key-point-to", 1]]) {
+    for (const [first, id] of ["key-point-from", "key-point-to"].entries()) {
       const select = part(id);
       const before = select.value;
       select.replaceChildren(...names.map((name) => new Option(name, name)));

@@ -50,7 +50,8 @@ function dashed(context, plot, [start, end], colour) {
 }
 
 /** A cross whose middle leaves the corner free to be seen. */
-function cross(context, [x, y], colour) {
+function cross(context, place, colour) {
+  const [x, y] = place;
   stroked(context, colour, 1.75, () => {
     for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
       context.moveTo(x + GAP_PX * dx, y + GAP_PX * dy);
@@ -70,7 +71,8 @@ function stroked(context, colour, width, trace) {
   context.stroke();
 }
 
-function label(context, [x, y], text, colour) {
+function label(context, place, text, colour) {
+  const [x, y] = place;
   context.font = FONT;
   context.textAlign = "left";
   context.textBaseline = "bottom";

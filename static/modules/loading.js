@@ -1,10 +1,9 @@
 // Loading another source, and outlines from files: chosen, dropped anywhere, and given up.
 
 import { confirmed } from "./confirm.js";
+import { all, part } from "./elements.js";
 import { frames } from "./numbers.js";
 import { send, upload } from "./server.js";
-
-const part = (id) => document.getElementById(id);
 
 /** As the server has them; it would hang up in the middle of a larger file. */
 const LARGEST_BYTES = { pass: 2 * 2 ** 30, outlines: 64 * 2 ** 20 };
@@ -26,7 +25,7 @@ export class Loading {
       demo: () => this.#loadDemo(),
       outlines: () => part("outlines-file").click(),
     };
-    for (const button of document.querySelectorAll("[data-open]")) {
+    for (const button of all("[data-open]")) {
       button.addEventListener("click", () => {
         part("open-menu").hidePopover();
         open[button.dataset.open]();

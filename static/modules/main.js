@@ -1,6 +1,7 @@
 // The page: one state from the server, shown in every part.
 
-import { Banner } from "./banner.js";
+import { bindActions } from "./actions.js";
+import { PARTS, part } from "./elements.js";
 import { ExportMenu } from "./export-menu.js";
 import { Carving } from "./carving.js";
 import { Detection } from "./detection.js";
@@ -11,6 +12,7 @@ import { showHull } from "./hull-view.js";
 import { resizablePanes } from "./panes.js";
 import { Loading } from "./loading.js";
 import { Measurements } from "./measurements.js";
+import { Notices } from "./notices.js";
 import { Parts } from "./parts.js";
 import { showParts } from "./parts-view.js";
 import { Picking } from "./picking.js";
@@ -22,32 +24,29 @@ import { KeyPoints } from "./key-points.js";
 import { getJson, keepLinked, send } from "./server.js";
 import { ReferenceView } from "./reference-view.js";
 import { RightPane } from "./right-pane.js";
-import { bindShortcuts, fillSheet } from "./shortcuts.js";
+import { fillSheet } from "./shortcuts.js";
 import { Share } from "./share.js";
 import { listenInSpace } from "./space-keys.js";
-import { fewViewsText, showSource } from "./source-view.js";
+import { showSource } from "./source-view.js";
 import { SpaceView } from "./space-view.js";
 import { Tabs } from "./tabs.js";
 import { Timeline } from "./timeline.js";
 import { Toolbar } from "./toolbar.js";
 import { Transport } from "./transport.js";
 
-const part = (id) => document.getElementById(id);
-
 let state = null;
 let newestSerial = -1;
 let frameOnShow = "";
 let isFetching = false;
-let linkWasLost = false;
-let complaint = "";
-let complaintKind = "bad";
 let isAnew = false;
-let dismissed = "";
 
 const tabs = new Tabs(document.querySelectorAll("[role=tab]"));
-const banner = new Banner(part("banner"));
 const panel = new FramePanel(showEditing, complain, showFrame);
 const { session, view, scene } = panel;
+const notices = new Notices(session, {
+  restart: () => command("POST", "/api/playback", { action: "restart" }),
+  choosePass: () => loading.choosePass(),
+});
 const rightPane = new RightPane({ go: showFrame });
 const keyPoints = new KeyPoints({ redraw: () => panel.redraw(), complain, go: showFrame, open: () => tabs.open("tools") });
 const measurements = new Measurements({ open: () => tabs.open("measurements") });
@@ -71,16 +70,7 @@ panel.keyPoints = () => ({
 const dynamicRange = new DynamicRange(view);
 const toolbar = new Toolbar(panel, editor, () => state?.window_m ?? null);
 const proposals = new Proposals(
-  {
-    list: part("tool-list"),
-    form: part("tool-form"),
-    settings: part("tool-settings"),
-    hint: part("tool-hint"),
-    complaint: part("tool-complaint"),
-    apply: part("tool-apply"),
-    discard: part("tool-discard"),
-    all: part("tool-all"),
-  },
+  PARTS.proposals,
   session,
   {
     show: showProposal,
@@ -102,30 +92,12 @@ new Detection({
   complain,
 });
 const review = new Review(
-  {
-    buttons: [...document.querySelectorAll("#review button[data-state]")],
-    accept: part("accept"),
-    count: part("review-count"),
-  },
+  PARTS.review,
   (number, name) => command("PUT", `/api/frames/${number}/state`, { state: name }),
   showFrame,
 );
 const carving = new Carving(
-  {
-    form: part("carving"),
-    rule: part("carving-rule"),
-    misses: part("carving-misses"),
-    spacing: part("carving-spacing"),
-    side: part("carving-side"),
-    first: part("carving-first"),
-    last: part("carving-last"),
-    complaint: part("carving-complaint"),
-    hullRevision: part("hull-revision"),
-    preview: part("preview-chip"),
-    threshold: part("threshold"),
-    revision: part("revision"),
-    emptied: part("emptied"),
-  },
+  PARTS.carving,
   {
     set: (changes) => rightPane.greyUntil(send("PUT", "/api/carving", changes).then(showState)),
     exclude: excludeAll,
@@ -141,27 +113,13 @@ const parts = new Parts(session, {
   complain,
 });
 const transport = new Transport(
-  {
-    play: part("play"),
-    step: part("step"),
-    restart: part("restart"),
-    speed: part("speed"),
-    cells: part("cells"),
-    follow: part("follow"),
-    text: part("reel-text"),
-  },
+  PARTS.transport,
   (body) => command("POST", "/api/playback", body),
   (frame) => command("POST", "/api/shown", { frame }),
   () => editor.spaceMovedPicture,
 );
 const timeline = new Timeline(
-  {
-    course: part("course"),
-    plots: part("course-plots"),
-    readout: part("course-readout"),
-    note: part("course-note"),
-    toggle: part("toggle-plots"),
-  },
+  PARTS.timeline,
   showFrame,
 );
 
@@ -180,7 +138,7 @@ const share = new Share(space, panel, { showFrame, complain });
 
 async function command(method, path, body) {
   try {
-    complaint = "";
+    notices.forget();
     showState(await send(method, path, body));
   } catch (error) {
     complain(error.message);
@@ -205,10 +163,8 @@ async function excludeAll(numbers) {
   }
 }
 
-function complain(sentence, kind = "bad") {
-  complaint = sentence;
-  complaintKind = kind;
-  showBanner();
+function complain(sentence, kind) {
+  notices.complain(sentence, kind);
 }
 
 function showState(next) {
@@ -221,7 +177,7 @@ function showState(next) {
   showSource(state);
   showHull(state);
   showParts(state);
-  showBanner();
+  notices.update(state);
   loading.update(state);
   exporting.update(state);
   carving.update(state);
@@ -266,7 +222,7 @@ async function bringFrame() {
       await session.refresh();
     }
   } catch (error) {
-    if (!linkWasLost) complain(error.message);
+    if (!notices.isLinkLost) complain(error.message);
   } finally {
     isFetching = false;
   }
@@ -298,8 +254,8 @@ function showEditing() {
   parts?.update();
   rightPane.greyWhile(session.isSaving);
   proposals?.update();
-  showBanner();
-  showSaved(session, linkWasLost);
+  notices?.show();
+  showSaved(session, notices?.isLinkLost);
   // News that came while somebody was drawing has waited.
   if (state) bringFrame();
 }
@@ -309,155 +265,38 @@ function showProposal(rings) {
   panel.redraw();
 }
 
-function showBanner() {
-  const lost = "The connection to the server is lost; trying again. What is on screen may be old.";
-  const { conflict } = session;
-  if (linkWasLost) {
-    const kept = `Your outline of frame ${conflict?.number} is kept on this page, not saved yet.`;
-    banner.show(conflict?.isUnsaved ? `${lost} ${kept}` : lost);
-  } else if (conflict) {
-    const what = conflict.isUnsaved
-      ? `Your outline of frame ${conflict.number} was not saved: the server did not answer.`
-      : `Frame ${conflict.number} was changed on another page meanwhile.`;
-    banner.show(`${what} The kept outline is on show, yours is the dashed one.`, [
-      ["Keep mine", () => session.keepMine()],
-      ["Take theirs", () => session.keepTheirs()],
-    ]);
-  } else if (complaint) banner.show(complaint, [["Dismiss", () => complain("")]], complaintKind);
-  else if (state?.message && dismissed !== noticeKey()) showFailure();
-  else if (state && fewViewsText(state) && dismissed !== noticeKey()) {
-    banner.show(fewViewsText(state), [["Dismiss", dismiss]], "note");
-  } else banner.show("");
-}
-
-const noticeKey = () => `${state.source.key}/${state.run}`;
-
-function dismiss() {
-  dismissed = noticeKey();
-  showBanner();
-}
-
-/** What a program says, as a person writes it. */
-function sentence(text) {
-  return `${text.charAt(0).toUpperCase()}${text.slice(1).replace(/[.!?]*$/, "")}.`;
-}
-
-function showFailure() {
-  const { message, frames } = state;
-  const kept = frames === 0 ? "" : ` The ${frames === 1 ? "frame" : `${frames} frames`} before that can still be edited and measured.`;
-  banner.show(`${sentence(message)}${kept}`, [
-    ["Try again", () => command("POST", "/api/playback", { action: "restart" })],
-    ["Open another pass…", () => loading.choosePass()],
-    ["Dismiss", dismiss],
-  ]);
-}
-
 function showLink(link) {
   part("link").textContent = link === "lost" ? "connection lost" : link;
   part("link").dataset.link = link;
-  if (link === "connected" && linkWasLost) {
+  if (link === "connected" && notices.isLinkLost) {
     frameOnShow = "";
     newestSerial = -1;
-    complaint = "";
+    notices.forget();
     isAnew = true;
     space.reconnect();
   }
-  linkWasLost = link === "lost";
-  exporting.setLost(linkWasLost);
-  showBanner();
-  showSaved(session, linkWasLost);
+  notices.isLinkLost = link === "lost";
+  exporting.setLost(notices.isLinkLost);
+  notices.show();
+  showSaved(session, notices.isLinkLost);
 }
 
-function openSheet() {
-  part("sheet").showModal();
-}
-
-/** One step back: the last point of what is being drawn, or else the last edit. */
-function undo() {
-  if (keyPoints.isMarking) keyPoints.undo();
-  else if (scene.draft) editor.remove();
-  else {
-    proposals.discard();
-    session.undo();
-  }
-}
-
-function redo() {
-  if (keyPoints.isMarking) keyPoints.redo();
-  else session.redo();
-}
+const openSheet = () => part("sheet").showModal();
 
 function savePicture() {
   const { name } = state.source;
   download(panel.picture(name), fileName(name, session.frame.number));
 }
 
-/** Take an excluded frame back in, or exclude it. */
-function toggleExcluded() {
-  const info = state?.frames_info?.[state.shown - 1];
-  review.set(info?.state === "excluded" ? "todo" : "excluded");
-}
-
-function enter() {
-  if (!picking.finish() && !proposals.apply() && !editor.accept()) review.accept();
-}
-
-function escape() {
-  if (!picking.stop() && !editor.cancel() && !proposals.discard()) editor.choose("vertex");
-}
-
-const chooseTool = (name) => () => {
-  if (document.querySelector(`[data-tool=${name}]`).hidden) return;
-  proposals.discard();
-  editor.choose(name);
-};
-const drawing = ["vertex", "polygon", "lasso", "brush", "eraser", "livewire", "keypoint"];
-const proposing = ["threshold", "grow", "snap", "copy previous", "copy next", "reprojection"];
-const reviewing = ["todo", "ok", "fix"];
-const named = (names, make) => Object.fromEntries(names.map((name) => [name, make(name)]));
-
-toolbar.onTool((name) => chooseTool(name)());
-bindShortcuts(
-  {
-    ...named(drawing, chooseTool),
-    ...named(proposing, (key) => () => proposals.choose(key)),
-    ...named(reviewing, (name) => () => review.set(name)),
-    delete: () => picking.takeBack() || editor.remove(),
-    pick: () => picking.toggle(),
-    smaller: () => toolbar.scaleBrush(1 / 1.25),
-    larger: () => toolbar.scaleBrush(1.25),
-    claim: () => toolbar.toggleClaim(),
-    undo,
-    redo,
-    "new keypoint": () => {
-      chooseTool("keypoint")();
-      keyPoints.begin();
-    },
-    enter,
-    escape,
-    excluded: toggleExcluded,
-    "page up": () => review.leaf(-1),
-    "page down": () => review.leaf(1),
-    "zoom in": () => view.zoom(1.25),
-    "zoom out": () => view.zoom(1 / 1.25),
-    fit: () => toolbar.fit(true),
-    ghost: () => panel.toggleLayer("ghost"),
-    overlay: () => panel.toggleLayer("hull"),
-    shadow: () => panel.toggleLayer("shadow"),
-    measure: () => measurements.openMenu(),
-    sheet: openSheet,
-  },
-  (isHidden) => {
-    scene.isHidden = isHidden;
-    panel.redraw();
-  },
-  // Nothing is kept in the middle of a stroke.
-  (name) => !session.isBusy || ["escape", "smaller", "larger"].includes(name),
-);
+bindActions({
+  ...{ panel, editor, proposals, review, toolbar, picking, keyPoints, measurements, openSheet },
+  shownInfo: () => state?.frames_info?.[state.shown - 1],
+});
 part("save-picture").addEventListener("click", savePicture);
 // A button that was pressed with the pointer leaves the keys to the picture.
 document.addEventListener("click", (event) => {
-  if (event.detail > 0 && event.target.closest(".frame button, .tool-list button, .history button")) {
+  const { target } = event;
+  if (event.detail > 0 && target instanceof Element && target.closest(".frame button, .tool-list button, .history button")) {
     part("frame-canvas").focus({ preventScroll: true });
   }
 });

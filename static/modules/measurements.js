@@ -1,10 +1,10 @@
 // The book of measurements in its tab: the list, what adds to it, its way back, files and intervals.
 
 import { confirmed } from "./confirm.js";
+import { all, part } from "./elements.js";
 import { MeasurementRow } from "./measurement-row.js";
 import { send, upload } from "./server.js";
 
-const part = (id) => document.getElementById(id);
 const PATH = "/api/measurements";
 const LARGEST_BYTES = 16 * 2 ** 20;
 const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
@@ -99,7 +99,7 @@ export class Measurements {
     return hull.lines.map(({ direction }, index) => ({
       kind: "line feature",
       ...this.#named(LINES[index]),
-      start: end(direction.map((part) => -part)),
+      start: end(direction.map((component) => -component)),
       end: end(direction),
     }));
   }
@@ -165,7 +165,7 @@ export class Measurements {
       });
       if (!isSure) return;
     }
-    await this.#order("DELETE", `?${new URLSearchParams({ name, along: along.length > 0 })}`);
+    await this.#order("DELETE", `?${new URLSearchParams({ name, along: String(along.length > 0) })}`);
   }
 
   /** Take facts, unless later ones are here already. */
@@ -247,7 +247,7 @@ export class Measurements {
       const other = names.find((name) => name !== selects[0].value);
       if (selects[0].value === selects[1].value && other) selects[1].value = other;
     }
-    for (const button of document.querySelectorAll("[data-pair]")) button.disabled = names.length === 0;
+    for (const button of all("[data-pair]")) button.disabled = names.length === 0;
   }
 
   #showIntervals({ intervals, items, hull: found }) {

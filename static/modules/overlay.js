@@ -117,7 +117,7 @@ export class Overlay {
   #drawHandles(context, { rings, colour, cursor, selected, hovered }) {
     const cursorPlace = cursor && onCanvas(this.#plot, ...cursor);
     const isNear = (place) => cursorPlace !== null && between(place, cursorPlace) < NEAR_PX;
-    rings.forEach((ring, ringIndex) => {
+    rings.forEach((ring) => {
       const places = ring.map((vertex) => onCanvas(this.#plot, ...vertex));
       const isSparse = meanStep(places) > SPARSE_PX;
       places.forEach((place, index) => {

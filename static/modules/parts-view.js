@@ -1,9 +1,8 @@
 // The target's parts that have hulls of their own: their lengths, and where they are in the whole.
 
+import { part } from "./elements.js";
 import { showExtents, showLines, showRows } from "./facts-view.js";
 import { fixed, vector, views, withUnit } from "./numbers.js";
-
-const part = (id) => document.getElementById(id);
 
 let seen = "";
 

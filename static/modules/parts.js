@@ -1,10 +1,10 @@
 // Which part of the target is being outlined: choosing one, naming a new one, deleting one.
 
 import { confirmed } from "./confirm.js";
+import { part } from "./elements.js";
 import { frames } from "./numbers.js";
 import { send } from "./server.js";
 
-const part = (id) => document.getElementById(id);
 const WHOLE = "target";
 const NEW = "";
 const DEFAULTS = ["solar panel", "antenna", "boom", "body"];

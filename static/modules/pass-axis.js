@@ -40,6 +40,7 @@ export class PassAxis {
 
   /** Number of the frame nearest to a place, from 1; null without frames on the axis. */
   nearest(place, frames) {
+    /** @type {{ distance: number, number: number } | null} */
     let best = null;
     frames.forEach((at, index) => {
       const distance = at === null ? Infinity : Math.abs(at - place);

@@ -1,9 +1,8 @@
 // Measuring by clicks on the hull: what is being picked, and what a click snaps to.
 
+import { part } from "./elements.js";
 import { openUnder } from "./menus.js";
 import { send } from "./server.js";
-
-const part = (id) => document.getElementById(id);
 
 export class Picking {
   /** As the server tells it, null where this page picks nothing. */

@@ -1,10 +1,9 @@
 // How the hull agrees with the reference mesh: asked for, stamped, and coloured in space.
 
+import { part } from "./elements.js";
 import { openUnder } from "./menus.js";
 import { fixed, withUnit } from "./numbers.js";
 import { send } from "./server.js";
-
-const part = (id) => document.getElementById(id);
 
 export class ReferenceView {
   #space;
@@ -56,7 +55,7 @@ function stamp(comparison, isStale) {
 
 function rows(found) {
   return [
-    ["Intersection over union", fixed(100 * found.intersection_over_union, 1) + "\u202f%", "Of the enclosed voxels"],
+    ["Intersection over union", withUnit(100 * found.intersection_over_union, 1, "%"), "Of the enclosed voxels"],
     ["Chamfer distance", withUnit(found.chamfer_m, 3, "m"), "Mean distance from surface to surface, mean of both ways"],
     ["Hausdorff distance", withUnit(found.hausdorff_m, 3, "m"), "Greatest distance found, either way"],
     ["Signed distance, mean", withUnit(found.mean_m, 3, "m"), "Over the hull's area, outside the reference positive"],

@@ -48,7 +48,7 @@ export class ResidualsView {
     );
     const most = (key) => Math.max(...frames.map((frame) => frame[key] ?? 0), 1e-9);
     const [mostCauses, mostSuffers] = [most("causes_m3"), most("suffers_m2")];
-    const focused = document.activeElement?.closest?.("#residuals tr")?.dataset.frame;
+    const focused = document.activeElement?.closest("#residuals tr")?.getAttribute("data-frame");
     table.tBodies[0].replaceChildren(
       ...sorted.map((frame) => {
         const row = document.createElement("tr");

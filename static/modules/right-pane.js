@@ -1,11 +1,10 @@
 // The right pane's Frame and Residuals tabs, and the greying of numbers that are being recomputed.
 
 import { Coverage } from "./coverage.js";
+import { part } from "./elements.js";
 import { ResidualsView } from "./residuals-view.js";
 import { getJson } from "./server.js";
 import { SkyPlot } from "./sky-plot.js";
-
-const part = (id) => document.getElementById(id);
 
 export class RightPane {
   #sky;

@@ -58,8 +58,10 @@ export function removed(rings, { ring, index }) {
 /**
  * Rings with a vertex moved by (rows, columns); neighbours within `reach` frame pixels along the
  * ring follow it, less and less by half a cosine, so that a dense outline bends and gets no spike.
+ * @param {number[]} by
  */
-export function moved(rings, { ring, index }, [rows, columns], reach) {
+export function moved(rings, { ring, index }, by, reach) {
+  const [rows, columns] = by;
   const result = copied(rings);
   const original = rings[ring];
   const weights = new Map([[index, 1]]);

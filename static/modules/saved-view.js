@@ -1,6 +1,6 @@
 // Whether what was drawn is on the server, in the top bar.
 
-const part = (id) => document.getElementById(id);
+import { part } from "./elements.js";
 
 /** Say whether the outline on show is saved, is on its way, or has not arrived. */
 export function showSaved(session, isLinkLost) {

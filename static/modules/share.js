@@ -1,6 +1,6 @@
 // Links to a state: the frame on show, this page's camera, and its layers.
 
-const part = (id) => document.getElementById(id);
+import { part } from "./elements.js";
 
 /** Of layers that lie over the frame's picture, in a link. */
 const OVER_PICTURE = "frame.";
@@ -67,6 +67,7 @@ export class Share {
     if (complaints.length > 0) this.#actions.complain(`The link: ${complaints.join("; ")}.`);
   }
 
+  /** @param {{ frame?: any, camera?: any, layers?: any }} wishes */
   async #show({ frame, camera, layers }) {
     const complaints = [];
     this.#awaited = frame ?? null;
@@ -115,12 +116,13 @@ export function hashOf({ frame, camera, layers }) {
 
 /** Read a link's last part: what it wishes for, and a complaint for each thing not understood. */
 export function readHash(hash) {
+  /** @type {{ frame?: any, camera?: any, layers?: any }} */
   const wishes = {};
   const complaints = [];
-  for (const part of hash.replace(/^#/, "").split("&")) {
-    const [key, ...rest] = part.split("=");
+  for (const wish of hash.replace(/^#/, "").split("&")) {
+    const [key, ...rest] = wish.split("=");
     const read = Object.hasOwn(READERS, key) ? READERS[key](rest.join("=")) : undefined;
-    if (read === undefined) complaints.push(`“${part.slice(0, 40)}” is not understood`);
+    if (read === undefined) complaints.push(`“${wish.slice(0, 40)}” is not understood`);
     else wishes[key] = read;
   }
   return { wishes, complaints };

@@ -2,7 +2,9 @@
 
 import { tinykeys } from "../vendor/tinykeys.js";
 
-/** [group, [[name of the action, keys for people, bindings, what it does], …]]; no binding: told only. */
+/** [group, [[name of the action, keys for people, bindings, what it does], …]]; no binding: told only.
+ * @type {[string, [string | null, string, string[], string][]][]}
+ */
 const GROUPS = [
   ["Outline", [
     ["vertex", "V", ["v"], "Edit vertices: drag; a middle handle puts one in"],
@@ -79,6 +81,7 @@ const NAVIGATION = /^(Arrow|Page|Home|End)/;
 
 /** Bind the table's keys to `actions` by name, where `isFree(name)`; H held calls `onHide(bool)`. */
 export function bindShortcuts(actions, onHide, isFree) {
+  /** @type {Record<string, (event: KeyboardEvent) => void>} */
   const bindings = {};
   for (const [name, , keys] of GROUPS.flatMap(([, rows]) => rows)) {
     for (const key of keys) {

@@ -1,8 +1,7 @@
 // The source of the frames, and how far its imaging is.
 
+import { part } from "./elements.js";
 import { frames, views } from "./numbers.js";
-
-const part = (id) => document.getElementById(id);
 
 /** Name the state's source and status in the top bar. */
 export function showSource(state) {

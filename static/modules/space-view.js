@@ -1,9 +1,8 @@
 // This page's own view in space: its layers, its camera, and a picture of it.
 
+import { part } from "./elements.js";
 import { getJson, send } from "./server.js";
 import { askFor, hasWebGl, pictureOf } from "./space-picture.js";
-
-const part = (id) => document.getElementById(id);
 
 /** What the browser calls this page, so that the server moves no other page's camera. */
 const NAME = `page-${Date.now().toString(36)}-${Math.random().toString(36).slice(2, 12)}`;

@@ -12,7 +12,7 @@ export function shape(name, attributes, text = "") {
 }
 
 /** Dots of frames, the one on show last and marked; `places` may hold null. */
-export function frameDots(places, shown, classOf = () => "") {
+export function frameDots(places, shown, classOf = (_number) => "") {
   const dot = (number) => {
     const [x, y] = places[number - 1];
     const isShown = number === shown;
@@ -24,7 +24,7 @@ export function frameDots(places, shown, classOf = () => "") {
     return circle;
   };
   const numbers = places.map((_, index) => index + 1).filter((number) => places[number - 1]);
-  return numbers.sort((a, b) => (a === shown) - (b === shown)).map(dot);
+  return numbers.sort((a, b) => Number(a === shown) - Number(b === shown)).map(dot);
 }
 
 /** Call `go(number)` for the dot nearest to a click on `svg`. */

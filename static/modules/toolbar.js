@@ -1,8 +1,7 @@
 // What stands around the picture: tools, undo, claim and label, layers, zoom.
 
+import { all, part } from "./elements.js";
 import { withUnit } from "./numbers.js";
-
-const part = (id) => document.getElementById(id);
 
 export class Toolbar {
   #panel;
@@ -116,10 +115,10 @@ export class Toolbar {
   }
 
   #layerButtons() {
-    return document.querySelectorAll(".frame button[data-layer]");
+    return all(".frame button[data-layer]");
   }
 
   #toolButtons() {
-    return document.querySelectorAll("#tools button[data-tool]");
+    return all("#tools button[data-tool]");
   }
 }

@@ -1,0 +1,1 @@
+export const tinykeys: (target: EventTarget, bindings: Record<string, (event: KeyboardEvent) => void>) => () => void;
