@@ -156,7 +156,7 @@ def test_files_are_downloaded_and_outlines_come_back(visit, tmp_path) -> None:
         if name == "GLB":
             check_accessible(page)
         with page.expect_download() as download:
-            page.get_by_role("link", name=name).press("Enter")
+            page.locator("#export-menu").get_by_role("link", name=name).press("Enter")
         assert download.value.suggested_filename.startswith(f"synthetic-body-rev{revision}-")
         assert download.value.suggested_filename.endswith(end)
         if name == "labelme":
