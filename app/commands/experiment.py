@@ -22,6 +22,7 @@ from app.commands.outputs import (
     show_results,
     write_json,
 )
+from core.experiments.fusion import run_fusion
 from core.experiments.limited import run_limited
 from core.experiments.physics.run import PARTS, run_physics
 from core.experiments.pictures import Picture, write_pictures
@@ -32,9 +33,12 @@ from core.experiments.temple import run_temple
 from core.experiments.wide import run_wide
 from core.formats.surfaces import write_surface
 
-Experiment = Literal["wide", "limited", "temple", "physics"]
+Experiment = Literal["wide", "limited", "fusion", "temple", "physics"]
 
-STUDIES: Mapping[str, Callable[..., Study]] = {"limited": run_limited}
+STUDIES: Mapping[str, Callable[..., Study]] = {
+    "limited": run_limited,
+    "fusion": run_fusion,
+}
 """Experiments that hand out pictures and a hull too; they take a spacing, noise and a seed."""
 
 
@@ -55,10 +59,10 @@ def experiment(
 
     wide: a Tiangong-like target under views over the whole sphere, from simulated echoes to
     lengths, by the shadow rule and by the paper's strict rule. limited: the same target from one
-    pass over Beijing, radar alone, and which directions stay unobserved. temple: the hull of a
-    real object from 16 calibrated photographs (Middlebury templeSparseRing). physics: scattering,
-    coherent intervals, imaging, focusing, registration and optics against theory and measured
-    data.
+    pass over Beijing, radar alone, and which directions stay unobserved. fusion: that pass with a
+    telescope beside the radar. temple: the hull of a real object from 16 calibrated photographs
+    (Middlebury templeSparseRing). physics: scattering, coherent intervals, imaging, focusing,
+    registration and optics against theory and measured data.
 
     Args:
         name: which experiment.

@@ -35,8 +35,16 @@ def unobserved_percent(views: Sequence[View]) -> float:
     return 100 * float(np.sum(area * (dilution > OBSERVED_DILUTION)) / np.sum(area))
 
 
-def observability_picture(sensors: Mapping[str, Sequence[View]], *, name: str) -> Picture:
-    """Picture the dilution over all directions, one map for each set of views by its name."""
+def observability_picture(
+    sensors: Mapping[str, Sequence[View]], *, name: str, note: str = ""
+) -> Picture:
+    """Picture the dilution over all directions, one map for each set of views by its name.
+
+    Args:
+        sensors: views as they vote, by what the map is called.
+        name: of the picture's file.
+        note: a further sentence of the caption.
+    """
     maps = {title: dilution_map(views) for title, views in sensors.items()}
 
     def draw(canvas: Canvas) -> None:
@@ -58,7 +66,7 @@ def observability_picture(sensors: Mapping[str, Sequence[View]], *, name: str) -
         name=name,
         caption="Dilution of a length along each direction of the target frame: by how much an "
         f"outline's error counts. Beyond the blue line it exceeds {OBSERVED_DILUTION:g}, and "
-        "nothing can be measured; a direction and its opposite are one.",
+        f"nothing can be measured; a direction and its opposite are one. {note}".rstrip(),
         draw=draw,
         size_in=(5.6 * len(maps), 4.2),
     )
