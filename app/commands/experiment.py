@@ -22,6 +22,7 @@ from app.commands.outputs import (
     show_results,
     write_json,
 )
+from core.experiments.factorization import run_factorization
 from core.experiments.fusion import run_fusion
 from core.experiments.limited import run_limited
 from core.experiments.physics.run import PARTS, run_physics
@@ -33,11 +34,12 @@ from core.experiments.temple import run_temple
 from core.experiments.wide import run_wide
 from core.formats.surfaces import write_surface
 
-Experiment = Literal["wide", "limited", "fusion", "temple", "physics"]
+Experiment = Literal["wide", "limited", "fusion", "factorization", "temple", "physics"]
 
 STUDIES: Mapping[str, Callable[..., Study]] = {
     "limited": run_limited,
     "fusion": run_fusion,
+    "factorization": run_factorization,
 }
 """Experiments that hand out pictures and a hull too; they take a spacing, noise and a seed."""
 
@@ -60,9 +62,10 @@ def experiment(
     wide: a Tiangong-like target under views over the whole sphere, from simulated echoes to
     lengths, by the shadow rule and by the paper's strict rule. limited: the same target from one
     pass over Beijing, radar alone, and which directions stay unobserved. fusion: that pass with a
-    telescope beside the radar. temple: the hull of a real object from 16 calibrated photographs
-    (Middlebury templeSparseRing). physics: scattering, coherent intervals, imaging, focusing,
-    registration and optics against theory and measured data.
+    telescope beside the radar. factorization: three lines of an MRO-like orbiter by factorization,
+    by energy accumulation and by our hull. temple: the hull of a real object from 16 calibrated
+    photographs (Middlebury templeSparseRing). physics: scattering, coherent intervals, imaging,
+    focusing, registration and optics against theory and measured data.
 
     Args:
         name: which experiment.
@@ -72,7 +75,8 @@ def experiment(
             not temple; physics has no hull).
         part: parts of the physics to run, all by default (physics only).
         views: number of views (wide only; 80 by default).
-        spacing_m: voxel spacing in metres; 0.15 or, for temple, 0.0005 by default.
+        spacing_m: voxel spacing in metres; 0.15, or 0.2 (factorization) or 0.0005 (temple) by
+            default.
         snr_db: signal-to-noise ratio per pulse and frequency sample (not temple, not physics; 20 dB
             by default).
         seed: of the random generator (not temple, not physics; 1 by default).

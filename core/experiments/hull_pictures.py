@@ -76,7 +76,7 @@ def sides_picture(hull: Surface, target: Target, *, name: str, what: str) -> Pic
         caption=f"{what}: from three sides, above the hull and below the truth (metres, target "
         "frame: x along-track, y opposite to the orbit normal, z to the geocentre).",
         draw=draw,
-        size_in=(12.0, 7.0),
+        size_in=(12.0, _height_in(sides, rows=2)),
     )
 
 
@@ -114,7 +114,7 @@ def error_pictures(
         caption="Error of the hull's surface: distance from the true surface in metres, outside "
         "it red, inside it blue.",
         draw=draw,
-        size_in=(12.0, 3.9),
+        size_in=(12.0, _height_in(sides, rows=1)),
     )
     return (picture,)
 
@@ -153,6 +153,12 @@ def _side(axes: tuple[int, int, int], lower: Floats, upper: Floats) -> _Side:
 
 def _widths(sides: tuple[_Side, ...]) -> list[float]:
     return [side.extent_m[1] - side.extent_m[0] for side in sides]
+
+
+def _height_in(sides: tuple[_Side, ...], *, rows: int) -> float:
+    """Return how high a picture 12 inches wide is with so many rows, labels included."""
+    tallest_m = max(side.extent_m[2] - side.extent_m[3] for side in sides)
+    return rows * (0.9 + 10.5 * tallest_m / sum(_widths(sides)))
 
 
 def _shading(body: trimesh.Trimesh, side: _Side) -> tuple[NDArray[np.bool_], Floats]:

@@ -1,6 +1,7 @@
 """The paper's experiment A: a Tiangong-like target under views from all around."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from core.measurement.lines import LineMeasurement, angle_between_lines_rad, pri
 from core.parallel import in_order
 from core.radar.echoes import simulate_echoes
 from core.radar.imaging import ImagingSettings, frames
-from core.radar.scatterers import surface_scatterers
+from core.radar.scatterers import Scatterers, surface_scatterers
 from core.radar.tracking_error import displaced
 from core.radar.waveform import Waveform
 from core.silhouettes.extraction import extract_silhouette
@@ -103,6 +104,10 @@ def simulated_frames(
     signal_to_noise_db: float,
     random: np.random.Generator,
     tracking_error_m: Floats | None = None,
+    waveform: Waveform | None = None,
+    imaging: ImagingSettings | None = None,
+    pulses_per_view: int = 256,
+    visible: float = 1.0,
     progress: Progress = lambda _stage, _done, _total: None,
 ) -> list[Frame]:
     """Return radar frames of a target from random directions, imaged from simulated echoes.
@@ -115,15 +120,18 @@ def simulated_frames(
         random: for directions, scatterers and noise.
         tracking_error_m: (views, 2) how far in range and cross-range every view's echoes are off
             what its projection says.
+        waveform: band and sampling; None for the built-in one.
+        imaging: of the frames; None for the built-in ones.
+        pulses_per_view: of each frame.
+        visible: probability that a scatterer is seen in a frame, each frame on its own.
         progress: told of stage, steps done and steps in all.
     """
-    waveform = Waveform()
-    imaging = ImagingSettings()
+    waveform, imaging = waveform or Waveform(), imaging or ImagingSettings()
     points = surface_scatterers(target, count=scatterers, random=random)
     track = random_views_track(
         views=views,
         turn_rad=waveform.wavelength_m / (2 * imaging.cross_range_resolution_m),
-        pulses_per_view=256,
+        pulses_per_view=pulses_per_view,
         pulse_repetition_frequency_hz=waveform.pulse_repetition_frequency_hz,
         random=random,
     )
@@ -134,7 +142,7 @@ def simulated_frames(
     def frame(work: tuple[tuple[int, int], Floats, np.random.Generator]) -> Frame:
         (start, stop), (range_m, cross_range_m), of_noise = work
         history = simulate_echoes(
-            points,
+            points if visible >= 1 else _glinting(points, visible, of_noise),
             track.part(start, stop),
             waveform,
             signal_to_noise_db=signal_to_noise_db,
@@ -151,6 +159,17 @@ def simulated_frames(
         images.append(image)
         progress("echoes and images", len(images), views)
     return images
+
+
+def _glinting(points: Scatterers, visible: float, random: np.random.Generator) -> Scatterers:
+    """Return the scatterers that a frame shows; what shades them stays whole."""
+    seen = random.random(len(points.reflectivity)) < visible
+    return replace(
+        points,
+        position_m=points.position_m[seen],
+        normal=points.normal[seen],
+        reflectivity=points.reflectivity[seen],
+    )
 
 
 def _carved(
