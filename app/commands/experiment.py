@@ -1,12 +1,12 @@
 """`radarhull experiment`."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import tyro
 
-from app.commands.console import Report, progress_bars
+from app.commands.console import progress_bars
 from app.commands.options import (
     JsonTo,
     OptionalFloat,
@@ -15,17 +15,37 @@ from app.commands.options import (
     checked_seed,
     checked_snr_db,
 )
-from app.commands.outputs import checked_folder, checked_json, show_results, write_json
+from app.commands.outputs import (
+    STANDARD_OUTPUT,
+    checked_folder,
+    checked_json,
+    show_results,
+    write_json,
+)
+from core.experiments.factorization import run_factorization
+from core.experiments.fusion import run_fusion
+from core.experiments.limited import run_limited
 from core.experiments.measurement.run import PARTS as MEASUREMENT_PARTS
 from core.experiments.measurement.run import run_measurement
 from core.experiments.physics.run import PARTS, run_physics
-from core.experiments.pictures import write_pictures
+from core.experiments.pictures import Picture, write_pictures
 from core.experiments.report import write_report
 from core.experiments.results import Results
+from core.experiments.study import Study
 from core.experiments.temple import run_temple
 from core.experiments.wide import run_wide
+from core.formats.surfaces import write_surface
 
-Experiment = Literal["wide", "temple", "physics", "measurement"]
+Experiment = Literal[
+    "wide", "limited", "fusion", "factorization", "temple", "physics", "measurement"
+]
+
+STUDIES: Mapping[str, Callable[..., Study]] = {
+    "limited": run_limited,
+    "fusion": run_fusion,
+    "factorization": run_factorization,
+}
+"""Experiments that hand out pictures and a hull too; they take a spacing, noise and a seed."""
 
 
 def experiment(
@@ -44,23 +64,28 @@ def experiment(
     """Run an experiment and print its table.
 
     wide: a Tiangong-like target under views over the whole sphere, from simulated echoes to
-    lengths, by the shadow rule and by the paper's strict rule. temple: the hull of a real object
-    from 16 calibrated photographs (Middlebury templeSparseRing). physics: scattering, coherent
-    intervals, imaging, focusing, registration and optics against theory and measured data.
-    measurement: lengths and attitude of two known targets from exact outlines and from echoes, how
-    often intervals hold the truth, and key points against noise (some five minutes).
+    lengths, by the shadow rule and by the paper's strict rule. limited: the same target from one
+    pass over Beijing, radar alone, and which directions stay unobserved. fusion: that pass with a
+    telescope beside the radar. factorization: three lines of an MRO-like orbiter by factorization,
+    by energy accumulation and by our hull. temple: the hull of a real object from 16 calibrated
+    photographs (Middlebury templeSparseRing). physics: scattering, coherent intervals, imaging,
+    focusing, registration and optics against theory and measured data. measurement: lengths and
+    attitude of two known targets from exact outlines and from echoes, how often intervals hold the
+    truth, and key points against noise (some five minutes).
 
     Args:
         name: which experiment.
         json: write settings and figures as JSON to this file, or to standard output for "-".
         data: folder of the photographs (temple), or of the measured Gotcha history (physics).
-        out: folder to write results.json, report.html and the pictures into (physics and
-            measurement).
+        out: folder to write results.json, report.html, hull.glb and the pictures into (not wide,
+            not temple; physics and measurement have no hull).
         part: parts of the physics or the measurement to run, all by default.
         views: number of views (wide only; 80 by default).
-        spacing_m: voxel spacing in metres; 0.15 (wide) or 0.0005 (temple) by default.
-        snr_db: signal-to-noise ratio per pulse and frequency sample (wide only; 20 dB by default).
-        seed: of the random generator (wide only; 1 by default).
+        spacing_m: voxel spacing in metres; 0.15, or 0.2 (factorization) or 0.0005 (temple) by
+            default.
+        snr_db: signal-to-noise ratio per pulse and frequency sample (not temple, not physics; 20 dB
+            by default).
+        seed: of the random generator (not temple, not physics; 1 by default).
     """
     checked_json(json)
     if name in ("physics", "measurement"):
@@ -70,17 +95,21 @@ def experiment(
             _refuse_foreign(name, {"--data": data})
         _pictured(name, part, data, out, json)
         return
-    _refuse_foreign(name, {"--out": out, "--part": part or None})
+    _refuse_foreign(name, {"--part": part or None})
+    chosen = {
+        "spacing_m": spacing_m,
+        "signal_to_noise_db": None if snr_db is None else checked_snr_db(snr_db),
+        "seed": None if seed is None else checked_seed(seed),
+    }
+    if name in STUDIES:
+        _refuse_foreign(name, {"--views": views, "--data": data})
+        _study(STUDIES[name], chosen, out, json)
+        return
+    _refuse_foreign(name, {"--out": out})
     if name == "wide":
         _refuse_foreign(name, {"--data": data})
-        settings = {
-            "views": views,
-            "spacing_m": spacing_m,
-            "signal_to_noise_db": None if snr_db is None else checked_snr_db(snr_db),
-            "seed": None if seed is None else checked_seed(seed),
-        }
         with progress_bars() as report:
-            results = _wide(settings, report)
+            results = run_wide(**_given({**chosen, "views": views}), progress=report)
     else:
         _refuse_foreign(name, {"--views": views, "--snr-db": snr_db, "--seed": seed})
         if data is None:
@@ -93,9 +122,30 @@ def experiment(
     show_results(results, json)
 
 
-def _wide(settings: Mapping[str, Any], report: Report) -> Results:
-    chosen = {name: value for name, value in settings.items() if value is not None}
-    return run_wide(**chosen, progress=report)
+def _given(settings: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in settings.items() if value is not None}
+
+
+def _study(
+    run: Callable[..., Study], settings: Mapping[str, Any], out: Path | None, json: str | None
+) -> None:
+    if out is not None:
+        checked_folder(out)
+    with progress_bars() as report:
+        study = run(**_given(settings), progress=report)
+    if out is not None:
+        _write(out, study.results, study.pictures)
+        if not study.hull.is_empty:
+            write_surface(out / "hull.glb", study.hull)
+    show_results(study.results, json)
+    if json != STANDARD_OUTPUT:
+        print(study.results.finding)
+
+
+def _write(out: Path, results: Results, pictures: Sequence[Picture]) -> None:
+    write_pictures(pictures, out)
+    write_report(out / "report.html", results, pictures)
+    write_json(str(out / "results.json"), results.to_json())
 
 
 def _pictured(
@@ -113,9 +163,7 @@ def _pictured(
         else:
             results, pictures = run_physics(parts=parts or PARTS, gotcha=gotcha, progress=report)
     if out is not None:
-        write_pictures(pictures, out)
-        write_report(out / "report.html", results, pictures)
-        write_json(str(out / "results.json"), results.to_json())
+        _write(out, results, pictures)
     show_results(results, json)
 
 

@@ -193,22 +193,17 @@ def _take_out(
     boxes = [
         _box(image, place, cell) for image, place, cell in zip(images, places, cells, strict=True)
     ]
-    # A pixel reaches one pixel to each side between which the image is linear.
-    windows = [
-        np.clip(box + np.array([-1.0, 0.0, -1.0, 0.0]), 0, image.window[[1, 1, 3, 3]])
-        for box, image in zip(boxes, images, strict=True)
-    ]
-    taken = [
-        PaddedImage(values=np.zeros_like(image.values), matrix=image.matrix, weight=image.weight)
-        for image in images
-    ]
-    held = 0.0
-    for image, part, (top, bottom, left, right) in zip(images, taken, boxes, strict=True):
+    held, taken = 0.0, []
+    for image, (top, bottom, left, right) in zip(images, boxes, strict=True):
         where = slice(top, bottom), slice(left, right)
-        part.values[where] = image.values[where]
+        # A pixel reaches one pixel to each side between which the image is linear.
+        part = np.pad(image.values[where], 1)
+        matrix = image.matrix.copy()
+        matrix[:, 3] -= top - 1, left - 1
+        taken.append(PaddedImage(values=part, matrix=matrix, weight=image.weight))
         image.values[where] = 0
-        held += float(part.values[where].sum(dtype=np.float64))
-    add_images(energy, taken, windows, sign=-1)
+        held += float(part.sum(dtype=np.float64))
+    add_images(energy, taken, [part.window for part in taken], sign=-1)
     return held
 
 

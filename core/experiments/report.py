@@ -34,10 +34,11 @@ def write_report(path: Path, results: Results, pictures: Sequence[Picture]) -> N
     settings = "; ".join(f"{name}: {_text(value)}" for name, value in results.settings.items())
     body = "".join(_table(table) for table in tables) + "".join(map(_figure, pictures))
     title = f"radarhull experiment {results.name}"
+    finding = f"<p><strong>{escape(results.finding)}</strong></p>" if results.finding else ""
     page = (
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
         f"<style>{STYLE}</style></head><body><h1>{escape(title)}</h1>"
-        f"<p>{escape(settings)}</p>{body}</body></html>\n"
+        f"{finding}<p>{escape(settings)}</p>{body}</body></html>\n"
     )
     with written_aside(path) as aside:
         aside.write_text(page, encoding="utf-8")

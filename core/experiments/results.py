@@ -105,12 +105,14 @@ class Results:
         settings: what it ran with; plain JSON values.
         figures: the numbers, with their targets.
         tables: further tables for a person to read; they are not part of the JSON.
+        finding: what was found, in a sentence made from the numbers; not part of the JSON.
     """
 
     name: str
     settings: Mapping[str, Any]
     figures: tuple[Figure, ...]
     tables: tuple[Table, ...] = field(default=())
+    finding: str = ""
 
     @property
     def met(self) -> bool:

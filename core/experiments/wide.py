@@ -1,6 +1,7 @@
 """The paper's experiment A: a Tiangong-like target under views from all around."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from core.measurement.lines import LineMeasurement, angle_between_lines_rad, pri
 from core.parallel import in_order
 from core.radar.echoes import simulate_echoes
 from core.radar.imaging import ImagingSettings, frames
-from core.radar.scatterers import surface_scatterers
+from core.radar.scatterers import Scatterers, surface_scatterers
 from core.radar.tracking_error import displaced
 from core.radar.waveform import Waveform
 from core.silhouettes.extraction import extract_silhouette
@@ -106,6 +107,7 @@ def simulated_frames(
     waveform: Waveform | None = None,
     imaging: ImagingSettings | None = None,
     pulses_per_view: int = 256,
+    visible: float = 1.0,
     progress: Progress = lambda _stage, _done, _total: None,
 ) -> list[Frame]:
     """Return radar frames of a target from random directions, imaged from simulated echoes.
@@ -121,10 +123,10 @@ def simulated_frames(
         waveform: with samples enough for the target's size; the usual one unless given.
         imaging: with images large enough for it; the usual unless given.
         pulses_per_view: enough for its size across the line of sight.
+        visible: probability that a scatterer is seen in a frame, each frame on its own.
         progress: told of stage, steps done and steps in all.
     """
-    waveform = waveform or Waveform()
-    imaging = imaging or ImagingSettings()
+    waveform, imaging = waveform or Waveform(), imaging or ImagingSettings()
     points = surface_scatterers(target, count=scatterers, random=random)
     track = random_views_track(
         views=views,
@@ -140,7 +142,7 @@ def simulated_frames(
     def frame(work: tuple[tuple[int, int], Floats, np.random.Generator]) -> Frame:
         (start, stop), (range_m, cross_range_m), of_noise = work
         history = simulate_echoes(
-            points,
+            points if visible >= 1 else _glinting(points, visible, of_noise),
             track.part(start, stop),
             waveform,
             signal_to_noise_db=signal_to_noise_db,
@@ -157,6 +159,17 @@ def simulated_frames(
         images.append(image)
         progress("echoes and images", len(images), views)
     return images
+
+
+def _glinting(points: Scatterers, visible: float, random: np.random.Generator) -> Scatterers:
+    """Return the scatterers that a frame shows; what shades them stays whole."""
+    seen = random.random(len(points.reflectivity)) < visible
+    return replace(
+        points,
+        position_m=points.position_m[seen],
+        normal=points.normal[seen],
+        reflectivity=points.reflectivity[seen],
+    )
 
 
 def _carved(
