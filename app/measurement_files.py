@@ -1,8 +1,10 @@
 """Measurements as files: the book, and the numbers that the hull has by itself."""
 
+from dataclasses import replace
 from typing import Any
 
 from app.attitudes import Attitude
+from app.components import component_facts
 from app.facts import carving_facts, hull_facts
 from app.measurement_facts import UNOBSERVED, ends, is_told
 from app.measuring import Item, MeasurementDesk
@@ -23,6 +25,7 @@ from core.formats.measurements import (
 from core.geometry.directions import FrameName
 from core.measurement.intervals import Interval
 from core.measurement.results import Measurement
+from core.silhouettes.silhouette import WHOLE
 
 MEASURED_WITHIN_S = 10.0
 """How long a download waits for a hull that is being measured."""
@@ -59,7 +62,7 @@ def measurements_file(
     hull = snapshot.hull
     if hull is None:
         raise ValueError("There is nothing measured yet; wait for the first frame.")
-    if hull.is_preview:
+    if snapshot.is_preview:
         raise ValueError("The hull follows an outline that is not kept yet; keep or discard it.")
     items = _items_of(desk, hull)
     entries = [
@@ -70,7 +73,8 @@ def measurements_file(
     if intervals is not None and intervals.revision != hull.revision:
         intervals = None
     if ending == "csv":
-        return measurements_to_csv(entries, hull_numbers(hull, intervals)).encode()
+        numbers = [*hull_numbers(hull, intervals), *_numbers_of_parts(snapshot)]
+        return measurements_to_csv(entries, numbers).encode()
     return measurements_to_json(entries, _about(snapshot, source)).encode()
 
 
@@ -101,7 +105,19 @@ def _about(snapshot: Snapshot, source: Source) -> dict[str, Any]:
         "source": source.name,
         "carving": carving_facts(snapshot.settings),
         "hull": None if snapshot.hull is None else hull_facts(snapshot.hull),
+        "components": component_facts(snapshot),
     }
+
+
+def _numbers_of_parts(snapshot: Snapshot) -> list[HullNumber]:
+    """Return the numbers of the parts' own hulls, each named after its part."""
+    carved = {label: snapshot.carved(label) for label in snapshot.components if label != WHOLE}
+    return [
+        replace(number, name=f"{label}: {number.name}")
+        for label, found in carved.items()
+        if found is not None
+        for number in hull_numbers(found[0], None)
+    ]
 
 
 def hull_numbers(hull: Hull, intervals: Intervals | None) -> list[HullNumber]:

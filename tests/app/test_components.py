@@ -193,10 +193,10 @@ def test_measurements_are_exported_with_their_component_and_its_hull(page) -> No
     (knife,) = state(page)["components"]
     assert page.get("/api/export/measurements.json").json()["components"] == [knife]
     rows = list(csv.DictReader(io.StringIO(page.get("/api/export/measurements.csv").text)))
-    volumes = {row["component"]: row for row in rows if row["kind"] == "volume"}
-    assert set(volumes) == {"target", "knife"}
-    assert volumes["knife"]["hull_revision"] == str(knife["hull"]["revision"])
-    assert volumes["target"]["hull_revision"] == str(state(page)["hull"]["revision"])
+    volumes = {row["name"]: row for row in rows if row["kind"] == "hull volume"}
+    assert set(volumes) == {"volume", "knife: volume"}
+    assert volumes["knife: volume"]["revision"] == str(knife["hull"]["revision"])
+    assert volumes["volume"]["revision"] == str(state(page)["hull"]["revision"])
 
 
 def test_a_part_is_deleted_from_all_frames_and_comes_back_by_undo(page) -> None:

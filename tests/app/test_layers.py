@@ -28,5 +28,5 @@ def test_a_colour_is_written_as_style_sheets_have_it() -> None:
 
 def test_an_unknown_layer_is_named() -> None:
     assert known_layers(["hull", "hull"]) == {"hull"}
-    with pytest.raises(ValueError, match="no layer clouds; the layers are grid, hull"):
+    with pytest.raises(ValueError, match="no layer clouds; the layers are distance, grid, hull"):
         known_layers(["hull", "clouds"])

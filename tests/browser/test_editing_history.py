@@ -36,7 +36,7 @@ def test_undo_and_redo_belong_to_their_frame(editing) -> None:
     page.keyboard.press("Control+z")
     wait_for_revision(page, 3)
     assert near(rings_of(page, 3), 60, 60, within=1e-3)
-    page.get_by_role("button", name="Undo").click()
+    page.get_by_role("button", name="Undo", exact=True).click()
     wait_for_revision(page, 4)
     assert rings_of(page, 3) == extracted
     assert rings_of(page, 2) == untouched
@@ -48,7 +48,7 @@ def test_undo_and_redo_belong_to_their_frame(editing) -> None:
     assert rings_of(page, 3) == extracted
     page.keyboard.press("Control+Shift+Z")
     wait_for_revision(page, 5)
-    page.get_by_role("button", name="Redo").click()
+    page.get_by_role("button", name="Redo", exact=True).click()
     wait_for_revision(page, 6)
     assert rings_of(page, 3) == dragged
     expect(page.locator("#redo")).to_be_disabled()

@@ -18,8 +18,8 @@ def in_plane(angle):
 
 @settings(max_examples=30)
 @given(
-    diffuse=st.floats(0, 0.5),
-    specular=st.floats(0, 0.5),
+    diffuse=st.floats(0, 0.5, allow_subnormal=False),
+    specular=st.floats(0, 0.5, allow_subnormal=False),
     shininess=st.floats(5, 500),
     incidence=st.floats(0, 1.5),
 )
