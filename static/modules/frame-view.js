@@ -171,7 +171,7 @@ export class FrameView {
       this.#onDraw(null);
       return;
     }
-    const context = canvas.getContext("2d");
+    const context = canvas.getContext("2d", { willReadFrequently: true });
     context.setTransform(scale, 0, 0, scale, 0, 0);
     const plot = this.plot();
     // Tests and tools read here where pixels of the frame lie on the canvas.

@@ -1,5 +1,7 @@
 // Hatches, so that nobody has to tell areas apart by their hue alone.
 
+import { cleared } from "./canvas.js";
+
 /** How each area is hatched: [hue, tint of the whole area, lines, CSS pixels between them]. */
 export const HATCHES = {
   onlyOutline: { colour: "#5fd68a", tint: 0.22, lines: "rising", step: 7, alpha: 0.95 },
@@ -23,9 +25,7 @@ export class Hatcher {
     const [[trace, rule], ...taken] = parts;
     const { canvas } = context;
     const scratch = this.#scratch;
-    scratch.width = canvas.width;
-    scratch.height = canvas.height;
-    const part = scratch.getContext("2d");
+    const part = cleared(scratch, canvas.width, canvas.height);
     part.setTransform(context.getTransform());
     const { colour, tint, alpha } = HATCHES[kind];
     trace(part);
@@ -56,7 +56,7 @@ export function hatchPattern(context, kind) {
   const scale = context.getTransform().a;
   const size = Math.round(step * scale);
   const tile = Object.assign(document.createElement("canvas"), { width: size, height: size });
-  const drawn = tile.getContext("2d");
+  const drawn = tile.getContext("2d", { willReadFrequently: true });
   drawn.strokeStyle = colour;
   drawn.lineWidth = 1.25 * scale;
   for (const [x, y, toX, toY] of LINES[lines](size)) {

@@ -5,7 +5,7 @@ export function paintLevels(picture, levels, colours, floorDb, topDb) {
   const { rows, columns, numbers } = levels;
   picture.width = columns;
   picture.height = rows;
-  const context = picture.getContext("2d");
+  const context = picture.getContext("2d", { willReadFrequently: true });
   const image = context.createImageData(columns, rows);
   const pixels = new Uint32Array(image.data.buffer);
   const colourOf = coloursOfNumbers(levels, colours, floorDb, topDb);

@@ -3,6 +3,7 @@
 // A plain canvas and not a tree of shapes: an extracted outline has hundreds of vertices, whose
 // handles keep their size on screen at every zoom.
 
+import { cleared } from "./canvas.js";
 import { clipTo, onCanvas } from "./frame-view.js";
 import { Hatcher } from "./hatching.js";
 import { drawKeyPoints } from "./key-point-overlay.js";
@@ -40,11 +41,9 @@ export class Overlay {
   draw(scene) {
     const canvas = this.#canvas;
     const scale = window.devicePixelRatio;
-    canvas.width = Math.round(canvas.clientWidth * scale);
-    canvas.height = Math.round(canvas.clientHeight * scale);
+    const context = cleared(canvas, Math.round(canvas.clientWidth * scale), Math.round(canvas.clientHeight * scale));
     const plot = this.#plot;
     if (plot === null || scene.rings === null || scene.isHidden) return;
-    const context = canvas.getContext("2d");
     context.setTransform(scale, 0, 0, scale, 0, 0);
     context.save();
     clipTo(context, plot);
