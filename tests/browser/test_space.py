@@ -140,7 +140,7 @@ def test_layers_and_views_are_the_pages_own_and_a_link_carries_them(
     expect(other.get_by_role("button", name="Copied")).to_be_visible()
     copied = other.evaluate("() => navigator.clipboard.readText()")
     assert copied.startswith(f"{space.address}/#frame=4&camera=")
-    assert copied.endswith(",1&layers=hull")
+    assert copied.endswith(",1&layers=hull,key-points,frame.shadow")
 
     # What one page does in space, the other does not see.
     page.locator("[data-view=home]").click()
