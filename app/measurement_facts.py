@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 from app.attitudes import Attitude, Attitudes
-from app.measuring import Item, MeasurementDesk
+from app.measured_items import Item
+from app.measuring import MeasurementDesk
 from app.measuring_intervals import Intervals
 from core.arrays import Floats
 from core.formats.measurement_fields import KINDS

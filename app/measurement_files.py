@@ -6,8 +6,9 @@ from typing import Any
 from app.attitudes import Attitude
 from app.components import component_facts
 from app.facts import carving_facts, hull_facts
+from app.measured_items import Item
 from app.measurement_facts import UNOBSERVED, ends, is_told
-from app.measuring import Item, MeasurementDesk
+from app.measuring import MeasurementDesk
 from app.measuring_intervals import Intervals
 from app.snapshot import Snapshot
 from app.source import Source

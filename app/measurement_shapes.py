@@ -8,7 +8,7 @@ import numpy as np
 
 from app.dimension_lines import step_aside_m
 from app.layers import ATTITUDE_COLOUR, LENGTH_COLOUR, SECTION_COLOUR, STALE_COLOUR, Colour
-from app.measuring import Item
+from app.measured_items import Item
 from app.picking import hull_size_m
 from app.surface_node import lifted
 from core.arrays import Floats

@@ -3,86 +3,27 @@
 import logging
 import threading
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
 
 from app.idle_work import Host
+from app.measured_items import Found, Item, Job, measured, since, with_interval, with_marks
 from app.measuring_intervals import (
     Intervals,
     IntervalWork,
     Progress,
     Wanted,
     encoded_alike,
-    voting_views,
 )
 from app.snapshot import Snapshot
 from core.analysis.measurement_book import MeasurementBook
-from core.analysis.measurement_grades import graded
 from core.arrays import Floats
-from core.measurement.intervals import Interval
-from core.measurement.key_point_errors import (
-    is_between_key_points,
-    marks_errors,
-    with_marks_error,
-)
-from core.measurement.measuring import MeasuringContext, measure_all
-from core.measurement.observability import Grade
-from core.measurement.results import Lost, Measurement
 from core.measurement.specs import Spec
 
 Observer = Callable[[tuple["Item", ...]], None]
 
 _log = logging.getLogger("radarhull")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Item:
-    """A measurement as it stands.
-
-    Attributes:
-        spec: how it is measured.
-        is_hidden: whether it is left out of the drawing.
-        result: on the hull whose revision it names, None until measured.
-        interval: of that very value, None while there is none.
-        change: of the value against the one on the hull measured before, in its unit; None where
-            either is missing.
-        observability: how well the views constrain it, None where that is no question.
-        old_interval: the interval of the value on an earlier hull, None where there is none or a
-            present one; with the revision of that hull.
-        old_revision: of that hull.
-    """
-
-    spec: Spec
-    is_hidden: bool
-    result: Measurement | Lost | None
-    interval: Interval | None
-    change: float | None
-    observability: Grade | None = None
-    old_interval: Interval | None = None
-    old_revision: int = 0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Found:
-    """What was found of one entry of the book."""
-
-    result: Measurement | Lost
-    observability: Grade | None
-    change: float | None
-    marks_error: float | None = None
-    """Standard error by the marks of key points, None where none enters."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Job:
-    """What is to be measured: the hull of a snapshot by the book and its key points."""
-
-    snapshot: Snapshot
-    book: MeasurementBook
-    key_points: Mapping[str, Floats]
-    covariances_m2: Mapping[str, Floats]
 
 
 class MeasurementDesk:
@@ -102,8 +43,8 @@ class MeasurementDesk:
         self._covariances_m2: Mapping[str, Floats] = MappingProxyType({})
         self._snapshot: Snapshot | None = None
         self._run = 0
-        self._found: dict[int, _Found] = {}
-        self._done: _Job | None = None
+        self._found: dict[int, Found] = {}
+        self._done: Job | None = None
         self._serial = 0
         self._told = 0
         self._observers: list[Observer] = []
@@ -124,7 +65,7 @@ class MeasurementDesk:
             found, entries = self._found, self._book.entries
         intervals = self._intervals.found
         items = (
-            _with_interval(
+            with_interval(
                 Item(
                     spec=entry.spec,
                     is_hidden=entry.is_hidden,
@@ -139,7 +80,7 @@ class MeasurementDesk:
             for entry in entries
         )
         founds = (found.get(entry.key) for entry in entries)
-        return tuple(_with_marks(*pair) for pair in zip(items, founds, strict=True))
+        return tuple(with_marks(*pair) for pair in zip(items, founds, strict=True))
 
     @property
     def serial(self) -> int:
@@ -336,11 +277,11 @@ class MeasurementDesk:
             keys = tuple(entry.key for entry in self._book.entries)
             return Wanted(keys=keys, specs=self._book.specs, key_points=self._key_points)
 
-    def _due(self) -> _Job | None:
+    def _due(self) -> Job | None:
         """Return what is to be measured, None if it has been; under the lock."""
         if self._snapshot is None:
             return None
-        job = _Job(
+        job = Job(
             snapshot=self._snapshot,
             book=self._book,
             key_points=self._key_points,
@@ -370,16 +311,16 @@ class MeasurementDesk:
                 self._changed.wait()
             return None
 
-    def _measure(self, job: _Job) -> None:
+    def _measure(self, job: Job) -> None:
         try:
-            found = _measured(job)
+            found = measured(job)
         except Exception:  # the thread must not die silently, nor for good
             _log.exception("The hull could not be measured.")
             found = {}
         with self._changed:
             if self._run == job.snapshot.run:
                 before = self._found
-                self._found = {key: _since(before.get(key), one) for key, one in found.items()}
+                self._found = {key: since(before.get(key), one) for key, one in found.items()}
                 self._done = job
             self._serial += 1
             self._changed.notify_all()
@@ -395,62 +336,6 @@ class MeasurementDesk:
                 observer(items)
             except Exception:
                 _log.exception("An observer of measurements failed; the others go on.")
-
-
-def _measured(job: _Job) -> dict[int, _Found]:
-    """Measure a hull by every entry of the book, by their keys."""
-    snapshot, entries, specs = job.snapshot, job.book.entries, job.book.specs
-    hull, surface = snapshot.hull, snapshot.surface
-    if hull is None or surface is None or not entries:
-        return {}
-    context = MeasuringContext(
-        revision=hull.revision, threshold=hull.threshold, key_points=job.key_points
-    )
-    results = measure_all(specs, surface, context)
-    by_name = {spec.name: result for spec, result in zip(specs, results, strict=True)}
-    errors = marks_errors(specs, surface, context, by_name, job.covariances_m2)
-    grades = graded(results, specs, voting_views(snapshot), snapshot.settings.grid(), hull.extents)
-    return {
-        entry.key: _Found(
-            result=result,
-            # Key points that the frames do not determine have no place to measure between.
-            observability=None if is_between_key_points(entry.spec) else grade,
-            change=None,
-            marks_error=errors.get(entry.name),
-        )
-        for entry, result, grade in zip(entries, results, grades, strict=True)
-    }
-
-
-def _since(before: _Found | None, now: _Found) -> _Found:
-    """Return what was found with its change against what was found on the hull before."""
-    if before is None or isinstance(before.result, Lost) or isinstance(now.result, Lost):
-        return now
-    if before.result.revision == now.result.revision:
-        return replace(now, change=before.change)
-    return replace(now, change=now.result.value - before.result.value)
-
-
-def _with_interval(item: Item, key: int, intervals: Intervals | None) -> Item:
-    """Return an item with its interval if that is of its very value, else as an old one."""
-    interval = None if intervals is None else intervals.by_key.get(key)
-    if intervals is None or interval is None:
-        return item
-    if isinstance(item.result, Measurement) and item.result.revision == intervals.revision:
-        return replace(item, interval=interval)
-    return replace(item, old_interval=interval, old_revision=intervals.revision)
-
-
-def _with_marks(item: Item, found: _Found | None) -> Item:
-    """Return an item whose interval holds what the marks of its key points may be off."""
-    if found is None or found.marks_error is None or not isinstance(item.result, Measurement):
-        return item
-    is_free = is_between_key_points(item.spec)
-    if item.interval is None and not is_free:
-        return item
-    hull = None if is_free else item.interval
-    interval = with_marks_error(item.result.value, found.marks_error, hull)
-    return replace(item, interval=interval, old_interval=None)
 
 
 def _are_same(one: Mapping[str, Floats], other: Mapping[str, Floats]) -> bool:

@@ -8,6 +8,7 @@ import numpy as np
 import viser
 from viser import SceneNodeDragEvent
 
+from app.measured_items import Item
 from app.measurement_shapes import (
     Arrows,
     End,
@@ -18,7 +19,7 @@ from app.measurement_shapes import (
     Tint,
     shapes_of,
 )
-from app.measuring import Item, MeasurementDesk
+from app.measuring import MeasurementDesk
 from app.picking import surface_anchor
 from app.snapshot import Snapshot
 from core.arrays import Floats

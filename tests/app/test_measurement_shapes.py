@@ -3,8 +3,8 @@ import pytest
 
 from app.dimension_lines import is_hidden, step_aside_m
 from app.layers import LENGTH_COLOUR, STALE_COLOUR
+from app.measured_items import Item
 from app.measurement_shapes import Arrows, End, Label, Lines, ShownHull, Tint, shapes_of
-from app.measuring import Item
 from core.measurement.anchors import SurfacePoint
 from core.measurement.measuring import MeasuringContext, measure
 from core.measurement.regions import Patch

@@ -4,7 +4,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.measuring import Item, MeasurementDesk
+from app.measured_items import Item
+from app.measuring import MeasurementDesk
 from app.snapshot import Snapshot
 from app.source import NO_SOURCE
 from app.stream import LiveStream

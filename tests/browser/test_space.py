@@ -134,13 +134,13 @@ def test_layers_and_views_are_the_pages_own_and_a_link_carries_them(
     other.goto(link)
     expect(other.locator("#frame-canvas")).to_have_attribute("data-frame", "4")
     expect(other.locator(".space [data-layer=grid]")).to_have_attribute("aria-pressed", "false")
+    # viser lowers its resolution on a busy machine: edges of the same view differ by up to 0.7 %.
     until(other, lambda image: share_changed(image, seen) < 0.01)
     assert "#" not in other.url
     other.get_by_role("button", name="Link").click()
     expect(other.get_by_role("button", name="Copied")).to_be_visible()
     copied = other.evaluate("() => navigator.clipboard.readText()")
-    assert copied.startswith(f"{space.address}/#frame=4&camera=")
-    assert copied.endswith(",1&layers=hull,key-points,frame.shadow")
+    assert copied == link
 
     # What one page does in space, the other does not see.
     page.locator("[data-view=home]").click()
