@@ -3,13 +3,14 @@
 import importlib
 import importlib.util
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated, Literal
 
 import tyro
 
 from app import loop_benchmark as loop
+from app import pick_benchmark as picking
 from app.commands.console import Report, progress_bars
 from app.commands.options import JsonTo, OptionalInt, checked_seed
 from app.commands.outputs import checked_json, show_results
@@ -18,12 +19,14 @@ from core.benchmarks.image import run_image
 from core.benchmarks.plots import plot_growth
 from core.experiments.results import Results
 
+Benchmark = Literal["carve", "edit", "growth", "surface", "image", "loop", "picks"]
 Sizes = Sequence[tuple[int, int]]
 
 
 def bench(
     name: Annotated[
-        Literal["carve", "edit", "growth", "surface", "image", "loop"], tyro.conf.Positional
+        Literal["carve", "edit", "growth", "surface", "image", "loop", "picks"],
+        tyro.conf.Positional,
     ],
     /,
     *,
@@ -39,14 +42,14 @@ def bench(
     a dragged vertex or a new outline to the exact mesh. growth: time and memory against voxels,
     views and vertices, with stored votes and hull only. surface: error against the true hull.
     image: from the demo's echoes to its 60 frames, against back-projection and plain NumPy. loop:
-    from a committed outline to the hull at a client of the running workstation's viewport. Peers
-    come with the extra "bench".
+    from a committed outline to the hull at a client of the running workstation's viewport. picks:
+    from a click's ray to the anchor that it means. Peers come with the extra "bench".
 
     Args:
         name: what to measure.
         sizes: voxels a side and views, as 256x60; the benchmark's own by default.
-        repeats: runs (carve, growth, image) or edits (edit, loop) of each kind; the benchmark's own
-            by default.
+        repeats: runs (carve, growth, image), edits (edit, loop) or picks of each kind; the
+            benchmark's own by default.
         json: write settings and figures as JSON to this file, or to standard output for "-".
         out: folder for plots (growth).
         seed: of views, edits and echoes.
@@ -66,25 +69,26 @@ def bench(
 
 
 def _run(
-    name: str, sizes: Sizes, repeats: int | None, out: Path | None, seed: int, report: Report
+    name: Benchmark, sizes: Sizes, repeats: int | None, out: Path | None, seed: int, report: Report
 ) -> Results:
-    if name == "carve":
-        return carve.run_carve(
+    runs: dict[Benchmark, Callable[[], Results]] = {
+        "carve": lambda: carve.run_carve(
             sizes=sizes or carve.SIZES, repeats=repeats or 5, seed=seed, progress=report
-        )
-    if name == "edit":
-        return edit.run_edit(
+        ),
+        "edit": lambda: edit.run_edit(
             sizes=sizes or edit.SIZES, repeats=repeats or 100, seed=seed, progress=report
-        )
-    if name == "image":
-        return run_image(repeats=repeats or 3, seed=seed, progress=report)
-    if name == "loop":
-        return loop.run_loop(
+        ),
+        "image": lambda: run_image(repeats=repeats or 3, seed=seed, progress=report),
+        "loop": lambda: loop.run_loop(
             sizes=sizes or loop.SIZES, edits=repeats or loop.EDITS, seed=seed, progress=report
-        )
-    if name == "surface":
-        return _surface(sizes, seed, report)
-    return _growth(sizes, repeats or 5, out, seed, report)
+        ),
+        "picks": lambda: picking.run_picks(
+            sizes=sizes or picking.SIZES, picks=repeats or picking.PICKS, seed=seed, progress=report
+        ),
+        "surface": lambda: _surface(sizes, seed, report),
+        "growth": lambda: _growth(sizes, repeats or 5, out, seed, report),
+    }
+    return runs[name]()
 
 
 def _growth(sizes: Sizes, repeats: int, out: Path | None, seed: int, report: Report) -> Results:

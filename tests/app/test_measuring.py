@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from app import idle_work, measuring, measuring_intervals
+from app import idle_work, measuring_intervals
 from app.measuring import MeasurementDesk
 from app.measuring_intervals import voting_views
 from app.playback import Playback
@@ -109,7 +109,7 @@ def test_the_latest_hull_wins(stream, desk, monkeypatch) -> None:
         assert going_on.wait(10)
         return measure_all(specs, surface, context)
 
-    monkeypatch.setattr(measuring, "measure_all", slow)
+    monkeypatch.setattr(measured_items, "measure_all", slow)
     first = commit(stream, 1, shifted(stream, 1, 1.0), 0).hull.revision
     assert entered.wait(10)
     assert desk.items[0].result.revision < first  # stands, as what it is, while it is old

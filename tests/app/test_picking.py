@@ -1,8 +1,5 @@
-import time
-
 import numpy as np
 import pytest
-import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -14,14 +11,13 @@ from app.picking import (
     Ray,
     hull_size_m,
     pick_on,
-    prepare,
     spec_of,
 )
 from core.measurement.anchors import PickRay, SurfacePoint, resolve
 from core.measurement.measuring import measure
 from core.measurement.picking import nearest_point_m, points_within_m
 from core.measurement.results import Lost
-from tests.measurement.bodies import SHIFTS, TURNS, box, cylinder, joined, moved, surface_of
+from tests.measurement.bodies import SHIFTS, TURNS, box, cylinder, joined, moved
 
 DOWN = (0.0, 0.0, -1.0)
 
@@ -134,25 +130,3 @@ def test_a_polyline_of_one_point_cannot_be_ended():
     body = box()
     with pytest.raises(ValueError, match="at least two points"):
         spec_of(picked("polyline", ray([1, 0, 9]), body=body), "it", body)
-
-
-@pytest.mark.parametrize("snap", SNAPS)
-def test_a_pick_on_300_000_faces_takes_at_most_20_ms(snap):
-    prepare(FINE)
-    click = ray([2.3, 0.2, 9.0])
-    assert len(FINE.faces) > 300_000
-    times_s = []
-    for _ in range(6):
-        began_s = time.process_time()
-        pick_on(FINE, click, snap)
-        times_s.append(time.process_time() - began_s)
-    assert min(times_s) < 0.020
-
-
-def fine_ellipsoid():
-    mesh = trimesh.creation.icosphere(subdivisions=7)
-    mesh.apply_scale([4, 2, 1])
-    return surface_of(mesh)
-
-
-FINE = fine_ellipsoid()
