@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from app import idle_work, measuring_intervals
+from app import idle_work, measured_items, measuring_intervals
 from app.measuring import MeasurementDesk
 from app.measuring_intervals import voting_views
 from app.playback import Playback

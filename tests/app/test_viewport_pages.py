@@ -62,6 +62,8 @@ def open_view(server, pages, wait_for) -> Iterator[Callable[[str], ClientConnect
         links.append(link)
         link.send(msgspec.msgpack.encode(CAMERA_MESSAGE))
         wait_for(lambda: len(server.get_clients()) > before)
+        # viser lists a client before those who wait for one have put their nodes into it.
+        wait_for(lambda: node(server, page, "wireframe") is not None)
         return link
 
     yield opened
@@ -73,9 +75,13 @@ def client_of(server: PrivateViserServer, page: str):
     return next(c for c in server.get_clients().values() if server.page_of(c) == page)
 
 
+def node(server: PrivateViserServer, page: str, layer: str):
+    return client_of(server, page).scene.get_handle_by_name(f"/{layer}")
+
+
 def shown(server: PrivateViserServer, page: str, layer: str) -> bool:
     """Whether the node that only this page's client has shows a layer."""
-    return client_of(server, page).scene.get_handle_by_name(f"/{layer}").visible
+    return node(server, page, layer).visible
 
 
 def test_each_page_has_its_own_layers(server, pages, wanted, open_view, wait_for) -> None:
