@@ -3,7 +3,7 @@
 import logging
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,8 +16,9 @@ from core.formats.measurement_fields import encoded
 from core.hull.casting import Cancelled, Watch
 from core.hull.closed_mesh import Surface
 from core.hull.view import View
+from core.measurement.axis_order import all_like, order_along
 from core.measurement.intervals import Interval, measured_intervals
-from core.measurement.lines import principal_lines
+from core.measurement.lines import LineMeasurement, principal_lines
 from core.measurement.measuring import MeasuringContext, measure_all
 from core.measurement.results import Measurement
 from core.measurement.specs import Spec
@@ -227,7 +228,7 @@ class IntervalWork:
         found = measured_intervals(
             voting_views(job.snapshot),
             settings.grid(),
-            lambda surface: _numbers(surface, wanted),
+            _numbers_like(job.snapshot.surface, wanted),
             tolerated_misses=settings.tolerated_misses,
             watch=Watch(progress=self._note, cancel=lambda: self._is_disturbed(job)),
         )
@@ -274,11 +275,24 @@ def encoded_alike(one: Spec, other: Spec) -> bool:
     return encoded(one) == encoded(other)
 
 
-def _numbers(surface: Surface, wanted: Wanted) -> Floats:
-    """Return the hull's own numbers and those wanted, NaN for what is lost."""
-    extents = np.ptp(surface.vertices_m, axis=0)
-    lines = [line.length_m for line in principal_lines(surface, LINE_NAMES)]
+def _numbers_like(shown: Surface | None, wanted: Wanted) -> Callable[[Surface], Floats]:
+    """Return what reads the numbers of a hull, its axes in the order that the shown hull has."""
+    if shown is None:
+        raise ValueError("There is no hull yet, so it has no numbers to state intervals of.")
     context = MeasuringContext(key_points=wanted.key_points)
-    results = measure_all(wanted.specs, surface, context)
-    values = [each.value if isinstance(each, Measurement) else np.nan for each in results]
-    return np.array([*extents, *lines, surface.volume_m3(), *values])
+    references = measure_all(wanted.specs, shown, context)
+    axes = _line_directions(principal_lines(shown, LINE_NAMES))
+
+    def numbers(surface: Surface) -> Floats:
+        extents = np.ptp(surface.vertices_m, axis=0)
+        lines = principal_lines(surface, LINE_NAMES)
+        lengths = [lines[number].length_m for number in order_along(_line_directions(lines), axes)]
+        results = all_like(measure_all(wanted.specs, surface, context), references)
+        values = [each.value if isinstance(each, Measurement) else np.nan for each in results]
+        return np.array([*extents, *lengths, surface.volume_m3(), *values])
+
+    return numbers
+
+
+def _line_directions(lines: Sequence[LineMeasurement]) -> Floats:
+    return np.array([line.direction for line in lines])

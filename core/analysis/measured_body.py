@@ -22,6 +22,7 @@ from core.hull.casting import UNWATCHED, Watch
 from core.hull.closed_mesh import Surface
 from core.hull.view import View
 from core.hull.volume import VoteVolume
+from core.measurement.axis_order import all_like
 from core.measurement.extents import Extent, axis_extents
 from core.measurement.intervals import COMMON_EDGE_CELLS, Interval, measured_intervals
 from core.measurement.measuring import MeasuringContext, measure_all
@@ -251,7 +252,7 @@ def _intervals(
     counts = [0 if isinstance(one, Lost) else 1 + len(one.sizes_m) for one in results]
 
     def numbers(surface: Surface) -> Floats:
-        found = measure_all(specs, surface, _context(body))
+        found = all_like(measure_all(specs, surface, _context(body)), results)
         return np.concatenate(
             [np.empty(0), *(_numbers(one, n) for one, n in zip(found, counts, strict=True))]
         )
