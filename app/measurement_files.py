@@ -14,15 +14,8 @@ from app.snapshot import Snapshot
 from app.source import Source
 from core.analysis.hull import Hull
 from core.arrays import Floats
-from core.formats.measurements import (
-    Entry,
-    HullKind,
-    HullNumber,
-    Reading,
-    measurements_to_csv,
-    measurements_to_json,
-    reading_of,
-)
+from core.formats.measurement_entries import Entry, HullKind, HullNumber, Reading, reading_of
+from core.formats.measurements import measurements_to_csv, measurements_to_json
 from core.geometry.directions import FrameName
 from core.measurement.intervals import Interval
 from core.measurement.results import Measurement

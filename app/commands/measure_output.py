@@ -11,7 +11,8 @@ import numpy as np
 from core.analysis.measured_body import Body, Orbit, Row
 from core.arrays import Floats
 from core.experiments.results import Table
-from core.formats.measurements import Entry, measurements_to_json
+from core.formats.measurement_entries import Entry
+from core.formats.measurements import measurements_to_json
 from core.geometry.directions import Direction, direction_in_frames
 from core.measurement.intervals import Interval
 from core.measurement.observability import Grade

@@ -15,7 +15,7 @@ from skyfield.api import EarthSatellite
 
 from core.analysis.measurement_grades import graded
 from core.arrays import Floats
-from core.formats.measurements import Entry, reading_of
+from core.formats.measurement_entries import Entry, reading_of
 from core.geometry.directions import Direction, FrameName, direction_in_frames
 from core.geometry.grid import VoxelGrid
 from core.hull.casting import UNWATCHED, Watch

@@ -7,7 +7,8 @@ import pytest
 import trimesh
 
 from app.command_line import main
-from core.formats.measurements import Entry, read_measurements, write_measurements
+from core.formats.measurement_entries import Entry
+from core.formats.measurements import read_measurements, write_measurements
 from core.formats.pass_file import RecordedPass, write_pass
 from core.measurement.anchors import Point
 from core.measurement.regions import ConnectedPart
