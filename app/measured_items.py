@@ -14,7 +14,8 @@ from core.measurement.key_point_errors import (
     marks_errors,
     with_marks_error,
 )
-from core.measurement.measuring import MeasuringContext, measure_all
+from core.measurement.measuring import measure_all
+from core.measurement.measuring_job import MeasuringContext
 from core.measurement.observability import Grade
 from core.measurement.results import Lost, Measurement
 from core.measurement.specs import Spec

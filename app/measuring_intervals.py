@@ -19,7 +19,8 @@ from core.hull.view import View
 from core.measurement.axis_order import all_like, order_along
 from core.measurement.intervals import Interval, measured_intervals
 from core.measurement.lines import LineMeasurement, principal_lines
-from core.measurement.measuring import MeasuringContext, measure_all
+from core.measurement.measuring import measure_all
+from core.measurement.measuring_job import MeasuringContext
 from core.measurement.results import Measurement
 from core.measurement.specs import Spec
 from core.reconstruction import LINE_NAMES

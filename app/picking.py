@@ -24,7 +24,7 @@ from core.measurement.anchors import (
     place_text,
     resolve,
 )
-from core.measurement.measuring import LEAST_LENGTH_M
+from core.measurement.measures import LEAST_LENGTH_M
 from core.measurement.parts import BodyAxes, body_axes, part_labels, surface_of_faces
 from core.measurement.picking import nearest_point_m
 from core.measurement.regions import ConnectedPart, Patch

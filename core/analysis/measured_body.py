@@ -25,7 +25,8 @@ from core.hull.volume import VoteVolume
 from core.measurement.axis_order import all_like
 from core.measurement.extents import Extent, axis_extents
 from core.measurement.intervals import COMMON_EDGE_CELLS, Interval, measured_intervals
-from core.measurement.measuring import MeasuringContext, measure_all
+from core.measurement.measuring import measure_all
+from core.measurement.measuring_job import MeasuringContext
 from core.measurement.observability import Grade
 from core.measurement.regions import WholeSurface
 from core.measurement.results import Lost, Measurement

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from core.arrays import Floats
 from core.geometry.grid import VoxelGrid
 from core.hull.closed_mesh import Surface
-from core.hull.crossings import CrossingTables, cross_grid_edges
+from core.hull.crossing_tables import CrossingTables
+from core.hull.crossings import cross_grid_edges
 from core.hull.cube_cases import edge_tables, triangle_table
 from core.hull.dual_cases import sheet_table, twice_passed_table
 from core.hull.dual_mesh import joined_faces, sheet_vertices, swept_normals

@@ -14,7 +14,8 @@ from core.arrays import Floats
 from core.geometry.grid import VoxelGrid
 from core.hull.changes import changed_edges
 from core.hull.closed_mesh import Surface
-from core.hull.crossings import CrossingTables, cross_grid_edges
+from core.hull.crossing_tables import CrossingTables
+from core.hull.crossings import cross_grid_edges
 from core.hull.cube_cases import edge_tables, triangle_table
 from core.hull.edge_cells import EdgeCells
 from core.hull.kept_crossings import ChangedEdges, any_near, end_misses, kept_crossings

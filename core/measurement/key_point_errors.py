@@ -11,7 +11,8 @@ from core.arrays import Floats
 from core.hull.closed_mesh import Surface
 from core.measurement.anchors import Anchor, KeyPoint, Point
 from core.measurement.intervals import CONFIDENCE, Interval
-from core.measurement.measuring import MeasuringContext, measure
+from core.measurement.measuring import measure
+from core.measurement.measuring_job import MeasuringContext
 from core.measurement.results import Lost, Measurement
 from core.measurement.specs import (
     DependentSpec,

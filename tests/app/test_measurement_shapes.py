@@ -6,7 +6,8 @@ from app.layers import LENGTH_COLOUR, STALE_COLOUR
 from app.measured_items import Item
 from app.measurement_shapes import Arrows, End, Label, Lines, ShownHull, Tint, shapes_of
 from core.measurement.anchors import SurfacePoint
-from core.measurement.measuring import MeasuringContext, measure
+from core.measurement.measuring import measure
+from core.measurement.measuring_job import MeasuringContext
 from core.measurement.regions import Patch
 from core.measurement.results import Lost
 from core.measurement.specs import (

@@ -15,7 +15,8 @@ from app.stream import LiveStream
 from core.analysis.history import NothingLeft
 from core.measurement.anchors import KeyPoint, PartEnd
 from core.measurement.intervals import measured_intervals
-from core.measurement.measuring import MeasuringContext, measure_all
+from core.measurement.measuring import measure_all
+from core.measurement.measuring_job import MeasuringContext
 from core.measurement.results import Lost
 from core.measurement.specs import AngleBetween, Length, PrincipalAxes, ScaleFactor, Volume
 from tests.app.synthetic import SETTINGS, source

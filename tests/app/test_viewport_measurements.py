@@ -13,7 +13,8 @@ from app.viewport_measurements import MeasurementDrawing, with_anchor
 from app.viser_server import PrivateViserServer
 from core.analysis.analysis import Analysis
 from core.measurement.anchors import Point, SurfacePoint
-from core.measurement.measuring import MeasuringContext, measure
+from core.measurement.measuring import measure
+from core.measurement.measuring_job import MeasuringContext
 from core.measurement.specs import Length, Polyline, Volume
 from tests.app.synthetic import SETTINGS
 from tests.measurement.bodies import box

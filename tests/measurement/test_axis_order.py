@@ -8,7 +8,8 @@ from core.geometry.grid import VoxelGrid
 from core.hull.surface import mask_surface
 from core.measurement.anchors import Point
 from core.measurement.axis_order import like, order_along
-from core.measurement.measuring import MeasuringContext, measure_all
+from core.measurement.measuring import measure_all
+from core.measurement.measuring_job import MeasuringContext
 from core.measurement.results import Lost
 from core.measurement.specs import OrientedBox, Polyline, PrincipalAxes
 

@@ -14,7 +14,8 @@ from core.measurement.key_point_errors import (
     with_marks_error,
 )
 from core.measurement.key_points import length_between, located
-from core.measurement.measuring import MeasuringContext, measure_all
+from core.measurement.measuring import measure_all
+from core.measurement.measuring_job import MeasuringContext
 from core.measurement.specs import AngleBetween, Length, LineFeature, Polyline, ScaleFactor, Volume
 from tests.measurement.bodies import box
 from tests.measurement.test_key_points import around, marks

@@ -6,7 +6,9 @@ from scipy.spatial.transform import Rotation
 
 from core.hull.surface import EMPTY_SURFACE
 from core.measurement.anchors import Extreme, KeyPoint, PartEnd, PickRay, Point, SurfacePoint
-from core.measurement.measuring import MeasuringContext, measure, measure_all, scale_factors
+from core.measurement.measures import scale_factors
+from core.measurement.measuring import measure, measure_all
+from core.measurement.measuring_job import MeasuringContext
 from core.measurement.regions import Ball, ConnectedPart, Patch
 from core.measurement.results import Lost, Measurement
 from core.measurement.specs import (
