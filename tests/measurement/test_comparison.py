@@ -36,7 +36,8 @@ def test_a_comparison_is_the_same_wherever_both_stand(turn, shift):
     assert found.hausdorff_m == pytest.approx(0.2, abs=1e-9)
     assert found.signed_distances_m.max() == pytest.approx(0.2)
     assert found.signed_distances_m.min() == pytest.approx(0, abs=1e-9)
-    assert found.intersection_over_union == pytest.approx(4 / 4.4, abs=0.04)
+    # Where faces lie on voxel centres, one of the 22 layers may fall either way.
+    assert found.intersection_over_union == pytest.approx(4 / 4.4, abs=1.01 / 22)
     assert 0 < found.chamfer_m < 0.05
 
 
