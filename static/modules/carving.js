@@ -30,8 +30,10 @@ export class Carving {
     this.#carving = carving ?? null;
     if (carving) this.#fill(fill);
     preview.hidden = !hull?.is_preview;
-    revision.textContent = hull?.revision === undefined ? "" : `rev ${hull.revision}`;
-    hullRevision.textContent = revision.textContent;
+    // A preview is not kept: what is saved stays at the revision that it had.
+    const text = hull?.revision === undefined ? "" : `rev ${hull.revision}`;
+    if (!hull?.is_preview) revision.textContent = text;
+    hullRevision.textContent = hull?.is_preview ? "" : text;
     threshold.textContent = hull?.threshold === undefined ? "" : thresholdText(hull);
     this.#updateEmptied(hull);
   }
