@@ -12,6 +12,10 @@ export class Carving {
     this.#parts = parts;
     this.#hooks = hooks;
     const { rule, misses, spacing, side, first, last } = parts;
+    parts.title.addEventListener("click", () => {
+      parts.form.scrollIntoView({ block: "nearest" });
+      rule.focus({ preventScroll: true });
+    });
     const listen = (field, changes) => field.addEventListener("change", () => {
       if (isValid(field)) this.#set(changes());
     });
@@ -27,6 +31,7 @@ export class Carving {
   update({ carving, hull }) {
     const { form, preview, threshold, revision, hullRevision } = this.#parts;
     form.hidden = !carving;
+    this.#parts.title.hidden = !carving;
     this.#carving = carving ?? null;
     if (carving) this.#fill(fill);
     preview.hidden = !hull?.is_preview;
