@@ -83,11 +83,15 @@ def test_an_outline_of_the_demo_is_notched_and_the_hull_follows_it_and_its_undo(
     page.mouse.down()
     page.mouse.move(*place(page, *end), steps=6)
     expect(page.locator("#preview-chip")).to_be_visible()
+    # What is tried out is not saved, and raises no revision.
+    expect(page.locator("#revision")).to_have_text(f"rev {before['revision']}")
     page.mouse.up()
     page.keyboard.up("Shift")
     expect(page.locator("#frame-canvas")).to_have_attribute("data-revision", str(revision + 1))
     expect(page.locator("#preview-chip")).to_be_hidden()
     cut = demo.hull()
+    assert cut["revision"] == before["revision"] + 1
+    expect(page.locator("#revision")).to_have_text(f"rev {cut['revision']}")
     demo.wait_until_drawn(cut["faces"])
     assert cut["volume_m3"] < before["volume_m3"] - 0.05
     assert cut["frames"] == before["frames"]
