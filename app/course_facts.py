@@ -16,18 +16,25 @@ _CRITERIA: dict[FocusCriterion, str] = {
     "motion": "by all of the line of sight's second derivative",
 }
 
+_CAUSES: dict[FocusCriterion, str] = {
+    "angles": "The viewing angles change unevenly during this turn",
+    "bending": "The line of sight leaves one plane during this turn",
+    "motion": "The line of sight does not turn evenly in one plane here",
+}
+
 
 def interval_facts(frame: Frame, course: tuple[PassCourse, ...]) -> dict[str, Any] | None:
     """Return the interval that a frame is the image of, None where it is not known."""
     if frame.sensor != "radar":
         return None
-    found = (each.interval_at(frame.time_s) for each in course if each.label == frame.label)
-    interval = next(found, None)
-    if interval is None:
+    found = next((each for each in course if each.label == frame.label), None)
+    interval = None if found is None else found.interval_at(frame.time_s)
+    if found is None or interval is None:
         return None
     return {
         "verdict": interval.assessed.verdict.status,
         "reason": interval.assessed.verdict.reason,
+        "in_words": _in_words(found, interval),
         "start_s": interval.imaged_start_s,
         "stop_s": interval.imaged_stop_s,
         "turn_deg": float(np.degrees(interval.imaged.turn_rad)),
@@ -65,6 +72,24 @@ def _interval_facts(interval: CourseInterval) -> dict[str, Any]:
         "turn_deg": float(np.degrees(wanted.turn_rad)),
         "pulses": wanted.stop - wanted.start,
     }
+
+
+def _in_words(course: PassCourse, interval: CourseInterval) -> str:
+    """Return what is wrong with an interval for people who use its image, empty if nothing is."""
+    verdict, division = interval.assessed.verdict, course.division
+    if verdict.status == "accepted" or division is None or division.target_radius_m is None:
+        return ""
+    sharp = f"a sharp image would resolve {verdict.resolution_m:.2g} m"
+    end = {
+        "shortened": f"Only its middle is imaged, which resolves {verdict.resolution_m:.2g} m",
+        "rejected": f"It gives no sharp image; {sharp}",
+    }[verdict.status]
+    if course.images_whole:
+        end = f"It is imaged whole all the same; {sharp}"
+    return (
+        f"{_CAUSES[division.criterion]}, which blurs what lies {division.target_radius_m:.3g} m "
+        f"from the middle. {end}."
+    )
 
 
 def _judged(course: PassCourse) -> str:

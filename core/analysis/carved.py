@@ -18,8 +18,9 @@ PREVIEW_VOXELS = 96
 class CarvedHull:
     """Votes, surface and numbers of one component's hull.
 
-    A hull is numbered when it is settled and keeps its number as long as it stays what it is.
-    Where one counter numbers the hulls of all components, no two of them ever share a number.
+    A hull is numbered when it is settled and keeps its number as long as it stays what it is;
+    after a preview it comes back with it. Where one counter numbers the hulls of all components, no
+    two of them that are settled ever share a number.
     """
 
     def __init__(
@@ -33,10 +34,11 @@ class CarvedHull:
         self._surface_of = surface_of
         self._volume = VoteVolume(settings.grid())
         self._coarse: VoteVolume | None = None
-        self._is_preview = False
+        self._preview_revision: int | None = None
         self._revision = revision
         self._settled_at = self._volume.revision
-        self._shown: tuple[Hull, Surface] | None = None
+        self._settled: tuple[Hull, Surface] | None = None
+        self._previewed: tuple[Hull, Surface] | None = None
 
     @property
     def volume(self) -> VoteVolume:
@@ -46,7 +48,7 @@ class CarvedHull:
     @property
     def is_preview(self) -> bool:
         """Whether a preview is on show."""
-        return self._is_preview
+        return self._preview_revision is not None
 
     def bring(self, places: Sequence[Place], settings: ReconstructionSettings) -> None:
         """Let frames vote by their places; what is on show stays until it is settled.
@@ -63,9 +65,10 @@ class CarvedHull:
         self._settled_at = self._volume.revision
 
     def settle(self, revision: int) -> None:
-        """Show the hull itself, as `revision` where it is another than the one on show."""
-        if self._is_preview or self._volume.revision != self._settled_at:
-            self._show(revision, is_preview=False)
+        """Show the hull itself, as `revision` where it is another than the one settled last."""
+        self._preview_revision = self._previewed = None
+        if self._volume.revision != self._settled_at:
+            self._revision, self._settled = revision, None
             self._settled_at = self._volume.revision
 
     def preview(
@@ -73,26 +76,31 @@ class CarvedHull:
     ) -> None:
         """Show, more coarsely, what other places would carve.
 
+        Args:
+            places: of the frames.
+            settings: by which they are carved.
+            revision: that the hull would have.
+
         Raises:
             ValueError: an outline without area, or a camera that stands in the grid.
         """
         if self._coarse is None:
             self._coarse = VoteVolume(_coarse_grid(settings))
         _carve(self._coarse, places, settings)
-        self._show(revision, is_preview=True)
+        self._preview_revision, self._previewed = revision, None
 
     def now(self) -> tuple[Hull, Surface]:
         """Return hull and surface, meshed and measured when first asked for."""
-        if self._shown is None:
-            is_preview = self._is_preview and self._coarse is not None
-            volume = self._coarse if is_preview and self._coarse is not None else self._volume
-            surface = self._surface_of(volume) if volume.view_count else EMPTY_SURFACE
-            hull = hull_of(volume, surface, revision=self._revision, is_preview=is_preview)
-            self._shown = hull, surface
-        return self._shown
+        if self._coarse is not None and self._preview_revision is not None:
+            self._previewed = self._previewed or self._meshed(self._coarse, self._preview_revision)
+            return self._previewed
+        self._settled = self._settled or self._meshed(self._volume, self._revision)
+        return self._settled
 
-    def _show(self, revision: int, *, is_preview: bool) -> None:
-        self._revision, self._is_preview, self._shown = revision, is_preview, None
+    def _meshed(self, volume: VoteVolume, revision: int) -> tuple[Hull, Surface]:
+        surface = self._surface_of(volume) if volume.view_count else EMPTY_SURFACE
+        is_preview = volume is self._coarse
+        return hull_of(volume, surface, revision=revision, is_preview=is_preview), surface
 
 
 def _carve(volume: VoteVolume, places: Sequence[Place], settings: ReconstructionSettings) -> None:

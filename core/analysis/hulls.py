@@ -56,7 +56,7 @@ class Hulls:
 
     @property
     def revision(self) -> int:
-        """How often anything has changed; the number of the hull that changed last."""
+        """How often anything kept has changed; the number of the hull that changed last."""
         return self._revision
 
     @property
@@ -123,25 +123,30 @@ class Hulls:
     ) -> None:
         """Show, more coarsely, the hull that other outlines of one component would carve.
 
+        It bears the number that it would get, and takes none: only what is kept is counted.
+
         Raises:
             ValueError: an outline that cannot vote, or too many parts.
         """
         _check_count({*self._carved, component})
         drafted = self._hull_of(component, settings)
         drafted.preview([f.place(component) for f in frames], settings, self._revision + 1)
-        self._take({**self._carved, component: drafted}, besides=component)
+        self._show({**self._carved, component: drafted}, besides=component)
 
     def end_preview(self, frames: Sequence[AnalysedFrame]) -> None:
         """Show the hulls themselves again."""
         if self.is_preview:
-            self._take({label: self._carved[label] for label in _labels(frames)})
+            self._show({label: self._carved[label] for label in _labels(frames)})
 
     def _hull_of(self, label: str, settings: ReconstructionSettings) -> CarvedHull:
         known = self._carved.get(label)
         return known or CarvedHull(settings, self._surface_of, revision=self._revision + 1)
 
-    def _take(self, carved: dict[str, CarvedHull], *, besides: str | None = None) -> None:
+    def _take(self, carved: dict[str, CarvedHull]) -> None:
         self._revision += 1
+        self._show(carved)
+
+    def _show(self, carved: dict[str, CarvedHull], *, besides: str | None = None) -> None:
         self._carved = carved
         for label, hull in carved.items():
             if label != besides:

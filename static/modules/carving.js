@@ -12,6 +12,10 @@ export class Carving {
     this.#parts = parts;
     this.#hooks = hooks;
     const { rule, misses, spacing, side, first, last } = parts;
+    parts.title.addEventListener("click", () => {
+      parts.form.scrollIntoView({ block: "nearest" });
+      rule.focus({ preventScroll: true });
+    });
     const listen = (field, changes) => field.addEventListener("change", () => {
       if (isValid(field)) this.#set(changes());
     });
@@ -27,11 +31,14 @@ export class Carving {
   update({ carving, hull }) {
     const { form, preview, threshold, revision, hullRevision } = this.#parts;
     form.hidden = !carving;
+    this.#parts.title.hidden = !carving;
     this.#carving = carving ?? null;
     if (carving) this.#fill(fill);
     preview.hidden = !hull?.is_preview;
-    revision.textContent = hull?.revision === undefined ? "" : `rev ${hull.revision}`;
-    hullRevision.textContent = revision.textContent;
+    // A preview is not kept: what is saved stays at the revision that it had.
+    const text = hull?.revision === undefined ? "" : `rev ${hull.revision}`;
+    if (!hull?.is_preview) revision.textContent = text;
+    hullRevision.textContent = hull?.is_preview ? "" : text;
     threshold.textContent = hull?.threshold === undefined ? "" : thresholdText(hull);
     this.#updateEmptied(hull);
   }

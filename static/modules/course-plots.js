@@ -21,6 +21,7 @@ export class CoursePlots {
   #axis = null;
   #frames = [];
   #shown = null;
+  #ticksShown = null;
 
   /**
    * Draw into `host`; `on.point(place or null, left)` follows the pointer,
@@ -43,16 +44,21 @@ export class CoursePlots {
     const rows = plotted(axis.spans.map((span) => span.pass));
     this.#plots = rows.map((quantities, index) => this.#plot(quantities, index === rows.length - 1));
     this.#host.dataset.plots = String(rows.length);
+    this.#ticksShown = null;
     this.#fit();
     this.setFrames(this.#frames, this.#shown);
   }
 
-  /** Mark where frames lie, and the one that is shown. */
+  /** Mark where frames lie, and the one that is shown; news come often, and most move only that. */
   setFrames(frames, shown) {
     this.#frames = frames;
     this.#shown = shown;
+    const ticksShown = frames.join();
     for (const { plot, mark, ticks } of this.#plots) {
-      if (ticks !== null) drawTicks(ticks, frames.filter((at) => at !== null).map((at) => plot.valToPos(at, "x")));
+      if (ticks !== null && ticksShown !== this.#ticksShown) {
+        drawTicks(ticks, frames.filter((at) => at !== null).map((at) => plot.valToPos(at, "x")));
+        this.#ticksShown = ticksShown;
+      }
       const place = frames[shown - 1] ?? null;
       mark.hidden = place === null;
       if (place !== null) mark.style.transform = `translateX(${plot.valToPos(place, "x")}px)`;
@@ -221,7 +227,10 @@ export class CoursePlots {
     if (this.#host.clientWidth === 0) return;
     for (const { plot, isLast } of this.#plots) plot.setSize(this.#size(isLast));
     // uPlot takes a new size on in a microtask; places measured before it would be the old ones.
-    queueMicrotask(() => this.setFrames(this.#frames, this.#shown));
+    queueMicrotask(() => {
+      this.#ticksShown = null;
+      this.setFrames(this.#frames, this.#shown);
+    });
   }
 }
 

@@ -5,6 +5,7 @@ import { send } from "./server.js";
 
 const PARTS = {
   open: "detect-all",
+  why: "detect-why",
   back: "detect-back",
   done: "detect-done",
   dialog: "detection",
@@ -20,6 +21,7 @@ export class Detection {
   #hooks;
   #order = null;
   #asked = 0;
+  #state = null;
 
   /** `hooks.settings()` to detect by, `hooks.show(state)`, `hooks.complain(sentence)`. */
   constructor(hooks) {
@@ -31,6 +33,17 @@ export class Detection {
     parts.back.addEventListener("click", () => this.#takeBack());
     parts.overwrite.addEventListener("change", () => this.#count());
     parts.go.addEventListener("click", () => this.#go());
+  }
+
+  /** Offer it where it can change something: by other settings, or over what was edited by hand. */
+  update(state = this.#state) {
+    this.#state = state;
+    if (state === null) return;
+    const wanted = Object.entries(this.#hooks.settings());
+    const isOther = wanted.some(([key, value]) => state.extraction[key] !== value);
+    const isEdited = (state.frames_info ?? []).some(({ edited }) => edited);
+    this.#parts.open.disabled = !isOther && !isEdited;
+    this.#parts.why.hidden = isOther || isEdited;
   }
 
   /** Ask whether to, naming how many frames would change. */

@@ -31,6 +31,7 @@ export const PARTS = {
   },
   carving: {
     form: part("carving"),
+    title: part("carving-title"),
     rule: part("carving-rule"),
     misses: part("carving-misses"),
     spacing: part("carving-spacing"),

@@ -24,17 +24,17 @@ export function frameRows(frame) {
   ].filter(([, text]) => text);
 }
 
-/** "shortened to 3.1° in 14.2 s, 512 pulses: the Doppler would bend by …"; empty where none is known. */
+/** "accepted, 3.1°, 14.2 s, 512 pulses", or what is wrong with it in words; empty where unknown. */
 function intervalText(interval) {
   if (!interval) return "";
-  const { verdict, reason, start_s: start, stop_s: stop, turn_deg: turn, pulses } = interval;
+  const { verdict, in_words: words, start_s: start, stop_s: stop, turn_deg: turn, pulses } = interval;
   const size = [
     isGiven(turn) && `${fixed(turn, 1)}°`,
     isGiven(start) && isGiven(stop) && withUnit(stop - start, 1, "s"),
     isGiven(pulses) && `${count(pulses)} pulses`,
   ].filter(Boolean).join(", ");
-  const why = verdict === "accepted" || !reason ? "" : `: ${keptTogether(reason)}`;
-  return `${[verdict, size].filter(Boolean).join(", ")}${why}`;
+  if (!words) return [verdict, size].filter(Boolean).join(", ");
+  return `${size}. ${keptTogether(words)}`;
 }
 
 const isGiven = (value) => value !== null && value !== undefined;

@@ -141,10 +141,12 @@ export class FramePanel {
   }
 
   /** Follow the hull of what is outlined, and the rule by which it is carved. */
-  follow({ hull, carving, components }) {
+  follow({ hull, carving, components, serial }) {
     this.#rule = carving.rule;
     const own = components.find(({ label }) => label === this.session.component);
-    this.bringOverlays((own?.hull ?? hull)?.revision);
+    const shown = own?.hull ?? hull;
+    // Previews one after the other bear one number, that which would be kept.
+    this.bringOverlays(shown?.is_preview ? `preview ${serial}` : shown?.revision);
   }
 
   /** Get what lies under the outline anew where the frame or the hull is another. */

@@ -81,9 +81,10 @@ const proposals = new Proposals(
     seeding: (isSeeding) => {
       if (isSeeding !== (editor.toolName === "grow")) editor.choose(isSeeding ? "grow" : "vertex");
     },
+    set: () => detection.update(),
   },
 );
-new Detection({
+const detection = new Detection({
   settings: () => proposals.thresholdSettings(),
   show: (next) => {
     proposals.discard();
@@ -118,10 +119,7 @@ const transport = new Transport(
   (frame) => command("POST", "/api/shown", { frame }),
   () => editor.spaceMovedPicture,
 );
-const timeline = new Timeline(
-  PARTS.timeline,
-  showFrame,
-);
+const timeline = new Timeline(PARTS.timeline, showFrame);
 
 const loading = new Loading({
   complain,
@@ -188,6 +186,7 @@ function showState(next) {
   timeline.update(state);
   panel.follow(state);
   proposals.beginWith(state.extraction);
+  detection.update(state);
   keyPoints.update(state);
   parts.update(state);
   space.update(state);

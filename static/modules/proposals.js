@@ -65,7 +65,7 @@ export class Proposals {
   #offered = [];
   #asking = new Latest(() => this.#ask(), 30);
 
-  /** Propose for `session`; `hooks.show(rings or null)`, `hooks.frames()`, `hooks.open()`, `hooks.seeding(bool)`. */
+  /** Propose for `session`; `hooks.show(rings or null)`, `hooks.frames()`, `hooks.open()`, `hooks.seeding(bool)`, `hooks.set()` after a setting. */
   constructor(parts, session, hooks) {
     this.#parts = parts;
     this.#session = session;
@@ -232,6 +232,7 @@ export class Proposals {
     input.addEventListener("input", () => {
       this.#values.set(`${tool.name}/${key}`, Number(input.value));
       tell(Number(input.value));
+      this.#hooks.set();
       if (!tool.needsSeed || this.#seed) this.#asking.ask();
     });
     const name = document.createElement("span");

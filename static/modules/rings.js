@@ -145,16 +145,29 @@ export function clockwiseArea(ring) {
 }
 
 /**
- * The strips behind each edge as far as `farRow`, each ring run one way around: filled by the
- * non-zero rule they are what the radar cannot see behind the rings.
+ * The strips behind each stretch of a ring that goes one way in column, as far as `farRow`, each
+ * run one way around: filled by the non-zero rule they are what the radar cannot see behind the
+ * rings.
  */
 export function shadowStrips(rings, farRow) {
-  return rings.flatMap((ring) => ring.flatMap((tail, index) => {
-    const head = ring[(index + 1) % ring.length];
-    if (tail[1] === head[1]) return [];
-    const [left, right] = tail[1] < head[1] ? [tail, head] : [head, tail];
-    return [[left, right, [farRow, right[1]], [farRow, left[1]]]];
+  return rings.flatMap((ring) => stretches(ring).map((stretch) => {
+    const along = stretch[0][1] < stretch.at(-1)[1] ? stretch : stretch.toReversed();
+    return [...along, [farRow, along.at(-1)[1]], [farRow, along[0][1]]];
   }));
+}
+
+/** A ring as open stretches along which the column only grows or only falls. */
+function stretches(ring) {
+  const found = [];
+  let direction = 0;
+  ring.forEach((tail, index) => {
+    const head = ring[(index + 1) % ring.length];
+    const way = Math.sign(head[1] - tail[1]);
+    if (way !== 0 && way === direction) found.at(-1).push(head);
+    else if (way !== 0) found.push([tail, head]);
+    direction = way;
+  });
+  return found;
 }
 
 /** Points, without those nearer than `step` frame pixels to the one before. */

@@ -330,10 +330,12 @@ def test_a_preview_is_coarser_says_so_and_leaves_the_votes_alone():
     assert of.hull.face_count < 0.8 * whole.face_count
     assert of.hull.volume_m3 != pytest.approx(whole.volume_m3, rel=1e-3)
     assert np.array_equal(of.volume.votes, votes)
+    assert of.hull.revision > whole.revision == of.revision
     of.end_preview()
-    assert not of.hull.is_preview
-    assert of.hull.volume_m3 == whole.volume_m3
-    assert of.hull.revision > whole.revision
+    assert of.hull is whole
+    of.preview(2, moved(OUTLINES[1], 3.0), base_revision=0)
+    commit(of, 2, moved(OUTLINES[1], 3.0))
+    assert of.hull.revision == of.revision == whole.revision + 1
 
 
 def test_the_frame_that_empties_the_hull_is_named():

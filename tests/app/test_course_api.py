@@ -74,6 +74,10 @@ def test_a_frame_finds_its_interval_by_pass_and_time() -> None:
     assert facts["verdict"] == interval.assessed.verdict.status
     assert facts["pulses"] == interval.imaged.stop - interval.imaged.start
     assert facts["start_s"] < of_pass.time_s < facts["stop_s"]
+    for each in COURSE.intervals:
+        of_each = interval_facts(replace(of_pass, time_s=each.middle_s), (COURSE,))
+        assert of_each is not None
+        assert ("blurs" in of_each["in_words"]) is (of_each["verdict"] != "accepted")
     assert interval_facts(replace(of_pass, label="pass 2"), (COURSE,)) is None
     assert interval_facts(replace(of_pass, time_s=1e6), (COURSE,)) is None
     assert interval_facts(replace(of_pass, sensor="optical"), (COURSE,)) is None

@@ -1,55 +1,40 @@
 """A scripted session of real edits in a real browser: from a pointer let go to the hull drawn.
 
     python -m tests.browser.edit_session --sizes 128x60 256x60 --edits 200
+    python -m tests.browser.edit_session --demo --edits 200
+
+The frames are drawn from outlines of a test satellite, or with `--demo` those of the built-in demo:
+60 images of simulated echoes, 20 of each of its three passes, carved on 128³ voxels.
 
 Each edit is a vertex dragged, a stroke of the brush or one of the eraser, made with the pointer on
 the page that a person uses. It ends when the viewport has drawn the hull of that edit: its mesh was
-handed to WebGL, drawn, and `finish` had come back. Server, browser and a renderer in software share
-the machine's processors.
+handed to WebGL, drawn, and a pixel read back. Server, browser and a renderer in software share
+the machine's processors; a table on stderr tells apart where the time goes.
 """
 
 import argparse
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
 from playwright.sync_api import Browser, Frame, Page, sync_playwright
 
-from app.loop_benchmark import WANTED_HZ, WANTED_MS, satellite_source
+from app.loop_benchmark import SIZES, WANTED_HZ, WANTED_MS, satellite_source
 from app.playback import Playback
+from app.source import Source
+from app.sources import demo_source
 from core.benchmarks.measuring import machine, percentile
 from core.benchmarks.workload import GRID_SIDE_M
 from core.experiments.results import Figure, Results
 from core.reconstruction import ReconstructionSettings
 from core.silhouettes.extraction import ExtractionSettings
 from tests.app.running import running
+from tests.browser.edit_stages import WATCH, WORDS, Stages, forget, stages, table
 from tests.chromium import FLAGS, installed_chromium
-
-WATCH = """(() => {
-  const now = () => performance.timeOrigin + performance.now();
-  window.ups = [];
-  window.draws = [];
-  addEventListener("pointerup", () => window.ups.push(now()), true);
-  const { prototype } = WebGL2RenderingContext;
-  const { bufferData, drawElements } = prototype;
-  let isFresh = false;
-  prototype.bufferData = function (target, data, ...rest) {
-    if (data?.byteLength > 4000) isFresh = true;
-    return bufferData.call(this, target, data, ...rest);
-  };
-  prototype.drawElements = function (mode, count, ...rest) {
-    drawElements.call(this, mode, count, ...rest);
-    if (!isFresh || count < 300) return;
-    isFresh = false;
-    this.finish();
-    window.draws.push({ faces: count / 3, ms: now() });
-  };
-})()"""
-"""Notes when the pointer was let go, and when each new mesh had been drawn."""
 
 PATIENCE_MS = 60_000
 
@@ -63,30 +48,98 @@ class EditTime:
     """What one edit took.
 
     Attributes:
-        hull_ms: from the pointer let go to the hull drawn; None where the hull stayed as it was.
+        stages: until the hull was drawn; None where it stayed as it was.
         drag_s: how long the pointer was down.
         previews: meshes drawn meanwhile.
+        late_previews: meshes drawn after that, before the hull's own.
     """
 
-    hull_ms: float | None
+    stages: Stages | None
     drag_s: float
     previews: int
+    late_previews: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Workload:
+    """What is edited.
+
+    Attributes:
+        title: of its figures.
+        source: of the frames.
+        settings: by which they are carved.
+        size: (voxels a side, frames).
+        reach_px: standard deviation by which a vertex is moved; a stroke's is twice that.
+        trims: whether strokes go inward from the side that the radar sees, with neighbours pulled.
+    """
+
+    title: str
+    source: Source
+    settings: ReconstructionSettings
+    size: tuple[int, int]
+    reach_px: float = 3.0
+    trims: bool = False
+
+
+def satellite(size: int = 128, views: int = 60, seed: int = 1) -> Workload:
+    """Return frames drawn from outlines of the test satellite."""
+    settings = ReconstructionSettings(
+        side_m=GRID_SIDE_M,
+        spacing_m=GRID_SIDE_M / size,
+        extraction=ExtractionSettings(censoring_factor=2.5),
+    )
+    return Workload(
+        title=f"{size}³×{views}",
+        source=satellite_source(views, seed),
+        settings=settings,
+        size=(size, views),
+    )
+
+
+def demo(size: int = 128) -> Workload:
+    """Return the built-in demo's frames, in its own grid's extent.
+
+    Their outlines lie outside the hull of them all, but for a few places, and behind the side that
+    the radar sees the hull does not care: strokes elsewhere would seldom change anything.
+    """
+    side_m = ReconstructionSettings().side_m
+    source = demo_source()
+    views = source.expected_frames
+    assert views is not None
+    settings = ReconstructionSettings(side_m=side_m, spacing_m=side_m / size)
+    return Workload(
+        title=f"demo {size}³×{views}",
+        source=source,
+        settings=settings,
+        size=(size, views),
+        reach_px=8.0,
+        trims=True,
+    )
 
 
 def run_session(
-    browser: Browser, *, size: int = 128, views: int = 60, edits: int = 200, seed: int = 1
+    browser: Browser,
+    workload: Workload,
+    *,
+    edits: int = 200,
+    seed: int = 1,
+    tell: Callable[[str], None] = lambda _: None,
 ) -> list[Figure]:
-    """Edit the test satellite on a grid of `size` voxels a side, and return what was seen."""
+    """Edit a workload's frames, and return what was seen; `tell` is told where the time went."""
     random = np.random.default_rng(seed)
-    with _opened(browser, size, views, seed) as (page, space):
+    with _opened(browser, workload) as (page, space):
         for _ in range(3):  # the first edits compile
-            _edit(page, space, random)
-        times = [_edit(page, space, random) for _ in range(edits)]
-    return _figures(f"{size}³×{views}", (size, views), times)
+            _edit(page, space, random, workload)
+        times = [_edit(page, space, random, workload) for _ in range(edits)]
+    if seen := [each.stages for each in times if each.stages is not None]:
+        tell(f"{workload.title}, {len(seen)} edits that changed the hull\n{table(seen)}")
+    return _figures(workload, times)
 
 
-def _figures(title: str, key: tuple[int, int], times: list[EditTime]) -> list[Figure]:
-    hulls = [each.hull_ms for each in times if each.hull_ms is not None]
+def _figures(workload: Workload, times: list[EditTime]) -> list[Figure]:
+    title = workload.title
+    changes = [each.stages for each in times if each.stages is not None]
+    hulls = [each.drawn_ms for each in changes]
     drags = [each for each in times if each.drag_s > 0.5]
     rate_hz = sum(each.previews for each in drags) / max(sum(each.drag_s for each in drags), 1e-9)
     return [
@@ -101,7 +154,17 @@ def _figures(title: str, key: tuple[int, int], times: list[EditTime]) -> list[Fi
             name=f"{title}: {WHAT}, p95",
             value=percentile(hulls, 95),
             unit="ms",
-            wanted=WANTED_MS.get(key),
+            wanted=WANTED_MS.get(workload.size),
+        ),
+        *(
+            Figure(
+                name=f"{title}: {WORDS[each.name]}, {name}",
+                value=percentile([getattr(stages, each.name) for stages in changes], share),
+                unit="ms",
+            )
+            for each in fields(Stages)
+            if each.name != "drawn_ms"
+            for name, share in (("median", 50), ("p95", 95))
         ),
         Figure(
             name=f"{title}: previews drawn while dragging",
@@ -109,33 +172,31 @@ def _figures(title: str, key: tuple[int, int], times: list[EditTime]) -> list[Fi
             unit="Hz",
             wanted=WANTED_HZ,
         ),
+        Figure(
+            name=f"{title}: previews drawn after the pointer was let go, of each edit",
+            value=sum(each.late_previews for each in times) / len(times),
+            unit="",
+        ),
     ]
 
 
 @contextmanager
-def _opened(browser: Browser, size: int, views: int, seed: int) -> Iterator[tuple[Page, Frame]]:
-    """Serve the test satellite and open its page, with all frames received."""
-    settings = ReconstructionSettings(
-        side_m=GRID_SIDE_M,
-        spacing_m=GRID_SIDE_M / size,
-        extraction=ExtractionSettings(censoring_factor=2.5),
-    )
+def _opened(browser: Browser, workload: Workload) -> Iterator[tuple[Page, Frame]]:
+    """Serve a workload and open its page, with all frames received."""
     playback = Playback(speed_hz=None)
-    with running(satellite_source(views, seed), settings, playback) as address:
+    with running(workload.source, workload.settings, playback) as address:
         page = browser.new_page(viewport={"width": 1440, "height": 900}, bypass_csp=True)
         page.set_default_timeout(PATIENCE_MS)
         page.add_init_script(WATCH)
         page.goto(address)
-        page.wait_for_function(
-            "() => document.querySelector('#status').dataset.status === 'finished'"
-        )
+        page.wait_for_function(IS_FINISHED)
         space = next(frame for frame in page.frames if "/viewport" in frame.url)
         space.wait_for_function("() => window.draws.length > 0")
         yield page, space
         page.close()
 
 
-def _edit(page: Page, space: Frame, random: np.random.Generator) -> EditTime:
+def _edit(page: Page, space: Frame, random: np.random.Generator, workload: Workload) -> EditTime:
     """Make one edit on another frame, and wait until the hull after it is drawn."""
     number = _go_on(page)
     facts = _asked(page, f"/api/frames/{number}")
@@ -143,47 +204,57 @@ def _edit(page: Page, space: Frame, random: np.random.Generator) -> EditTime:
     before = _state(page)["hull"]
     kind = str(random.choice(["vertex", "brush", "eraser"], p=[0.7, 0.15, 0.15]))
     page.keyboard.press({"vertex": "v", "brush": "b", "eraser": "e"}[kind])
-    start, end = _stroke(facts["silhouette"]["rings"], kind, random)
-    space.evaluate("window.draws.length = 0")
-    down_ms, up_ms = _drag(page, start, end)
+    reach_px = workload.reach_px * (1 if kind == "vertex" else 2)
+    start, end = _stroke(facts["silhouette"]["rings"], reach_px, random, workload.trims)
+    forget(space)
+    with _held(page, "Shift" if workload.trims and kind == "vertex" else None):
+        down_ms, up_ms = _drag(page, start, end)
     page.wait_for_function(
         "(past) => { const { revision, saving } = document.querySelector('#frame-canvas').dataset;"
         " return Number(revision) > past && saving === 'false'; }",
         arg=revision,
     )
-    hull = _state(page)["hull"]
-    drawn = _drawn_ms(
-        space, hull["faces"], up_ms, may_stay=hull["volume_m3"] == before["volume_m3"]
-    )
-    previews = space.evaluate("(up) => window.draws.filter(({ ms }) => ms < up).length", up_ms)
-    return EditTime(
-        hull_ms=None if drawn is None else drawn - up_ms,
-        drag_s=1e-3 * (up_ms - down_ms),
-        previews=previews,
-    )
-
-
-def _drawn_ms(space: Frame, faces: int, up_ms: float, *, may_stay: bool) -> float | None:
-    """Return when a hull of so many faces was drawn; None where it stayed and was not."""
-    if may_stay:
+    state = _state(page)
+    hull, published_ms = state["hull"], state["latency_ms"]["last"]
+    if hull["volume_m3"] == before["volume_m3"]:
         space.wait_for_timeout(300)
-        return None
-    found = space.wait_for_function(
-        "([faces, up]) => window.draws.find((draw) => draw.faces === faces && draw.ms >= up)?.ms",
-        arg=[faces, up_ms],
+        seen = None
+    else:
+        seen = stages(page, space, up_ms, hull, published_ms)
+    drawn_ms = space.evaluate("window.draws.map(({ ms }) => ms)")
+    last_ms = up_ms if seen is None else up_ms + seen.drawn_ms
+    return EditTime(
+        stages=seen,
+        drag_s=1e-3 * (up_ms - down_ms),
+        previews=sum(ms < up_ms for ms in drawn_ms),
+        late_previews=sum(up_ms <= ms < last_ms for ms in drawn_ms),
     )
-    return float(found.json_value())
 
 
 def _stroke(
-    rings: list[list[list[float]]], kind: str, random: np.random.Generator
+    rings: list[list[list[float]]], reach_px: float, random: np.random.Generator, trims: bool
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return where a stroke begins, on the outline, and where it ends, in pixels."""
-    ring = rings[int(random.integers(len(rings)))]
-    row, column = ring[int(random.integers(len(ring)))]
-    reach = 3.0 if kind == "vertex" else 6.0
-    by = random.normal(0.0, reach, 2)
-    return (row, column), (row + by[0], column + by[1])
+    ring = np.array(rings[int(random.integers(len(rings)))])
+    if trims:
+        ring = np.array(max(rings, key=len))
+        near = ring[:, 0] < np.median(ring[:, 0])
+        inward = ring.mean(axis=0) - ring
+        ring, inward = ring[near], inward[near]
+    place = int(random.integers(len(ring)))
+    by = random.normal(0.0, reach_px, 2)
+    if trims:
+        by = np.hypot(*by) * inward[place] / np.hypot(*inward[place])
+    return (ring[place][0], ring[place][1]), (ring[place][0] + by[0], ring[place][1] + by[1])
+
+
+@contextmanager
+def _held(page: Page, key: str | None) -> Iterator[None]:
+    if key is not None:
+        page.keyboard.down(key)
+    yield
+    if key is not None:
+        page.keyboard.up(key)
 
 
 def _drag(page: Page, start: tuple[float, float], end: tuple[float, float]) -> tuple[float, float]:
@@ -218,9 +289,12 @@ def _state(page: Page) -> dict[str, Any]:
 def _go_on(page: Page) -> int:
     """Show the frame after the one on show, round and round, and return its number."""
     state = _state(page)
-    number = state["shown"] % state["frames"] + 1
-    order = {"method": "POST", "body": json.dumps({"frame": number})}
-    order["headers"] = {"Content-Type": "application/json"}
+    number: int = state["shown"] % state["frames"] + 1
+    order = {
+        "method": "POST",
+        "body": json.dumps({"frame": number}),
+        "headers": {"Content-Type": "application/json"},
+    }
     page.evaluate("(order) => fetch('/api/shown', order)", order)
     page.wait_for_function(
         "(number) => document.querySelector('#frame-canvas').dataset.frame === String(number)",
@@ -241,11 +315,22 @@ def main() -> None:
     figures: list[Figure] = []
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=installed_chromium(), args=list(FLAGS))
-        for size, views in options.sizes:
-            figures += run_session(browser, size=size, views=views, edits=options.edits)
+        for workload in _workloads(options):
+            figures += run_session(browser, workload, edits=options.edits, tell=_tell)
     settings = {"edits": options.edits, **before, "load_average_at_end": machine()["load_average"]}
     results = Results(name="edit session", settings=settings, figures=tuple(figures))
     json.dump(results.to_json(), sys.stdout, indent=2)
+
+
+def _workloads(options: argparse.Namespace) -> list[Workload]:
+    drawn = [satellite(size, views) for size, views in options.sizes or ()]
+    if options.demo:
+        return [*drawn, demo()]
+    return drawn or [satellite(size, views) for size, views in SIZES]
+
+
+def _tell(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
 
 
 def _options() -> argparse.Namespace:
@@ -255,7 +340,8 @@ def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
-    parser.add_argument("--sizes", type=size, nargs="+", default=[(128, 60), (256, 60)])
+    parser.add_argument("--sizes", type=size, nargs="+", help="of the test satellite's sessions")
+    parser.add_argument("--demo", action="store_true", help="edit the built-in demo's frames")
     parser.add_argument("--edits", type=int, default=200)
     return parser.parse_args()
 

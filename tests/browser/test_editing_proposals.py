@@ -29,9 +29,21 @@ def test_a_proposal_is_shown_before_it_is_kept(editing) -> None:
 
 def test_all_frames_are_detected_anew_once_that_is_confirmed(editing) -> None:
     page = editing()
+    page.keyboard.press("t")
+    detect = page.get_by_role("button", name="Detect in all frames")
+    # By the settings that found every outline there is nothing to do.
+    expect(detect).to_be_disabled()
+    expect(page.locator("#detect-why")).to_contain_text("change one first")
+    page.get_by_label("Detection a₂").fill("15")
+    expect(detect).to_be_enabled()
+    page.get_by_label("Detection a₂").fill("5")
+    expect(detect).to_be_disabled()
+    page.keyboard.press("Escape")
     square = put_square(page, 2, shown=3)
     before = [rings_of(page, number) for number in (1, 2, 3)]
     page.keyboard.press("t")
+    # An outline edited by hand can be overwritten.
+    expect(detect).to_be_enabled()
     # GrabCut is for photographs.
     expect(page.get_by_role("button", name="GrabCut")).to_be_hidden()
     page.get_by_label("Detection a₂").fill("15")

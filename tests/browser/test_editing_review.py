@@ -40,6 +40,8 @@ def test_frames_are_reviewed_leafed_through_and_excluded_by_keys(editing) -> Non
 def test_carving_is_set_and_a_refusal_is_the_servers_sentence(editing) -> None:
     page = editing()
     expect(page.locator("#threshold")).to_have_text("inside all 3 views")
+    page.get_by_role("button", name="Carving").click()
+    expect(page.get_by_label("Last frame that votes")).to_be_in_viewport(ratio=1)
     misses = page.get_by_label("Tolerated misses")
     misses.fill("1")
     misses.press("Enter")

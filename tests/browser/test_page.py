@@ -170,7 +170,7 @@ def test_an_earlier_frame_is_shown_while_the_hull_stays(visit) -> None:
     expect(page.locator("#frame-canvas")).to_have_attribute("data-frame", "2")
     expect(page.locator("#space-stamp")).to_have_text("hull of 4 views, frame 2")
     expect(page.locator("#hull-stamp")).to_have_text("after 4 frames")
-    page.get_by_role("button", name="Follow the latest frame").click()
+    page.get_by_role("button", name="Follow latest").click()
     expect(page.locator("#frame-canvas")).to_have_attribute("data-frame", "4")
 
 
