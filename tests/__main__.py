@@ -6,7 +6,9 @@ import pytest
 
 from tests.chromium import ensure_chromium
 
+PARALLEL = ("-n", "auto", "--dist", "loadfile", "--durations", "25")
+"""A file's tests share what they compute once, so they stay together; the slowest are named."""
+
 if __name__ == "__main__":
     ensure_chromium()
-    # A file's tests share what they compute once, so they stay together.
-    raise SystemExit(pytest.main(["-n", "auto", "--dist", "loadfile", *sys.argv[1:]]))
+    raise SystemExit(pytest.main([*PARALLEL, *sys.argv[1:]]))
