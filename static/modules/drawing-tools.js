@@ -117,6 +117,8 @@ export function brushTool(editor, isAdding) {
       const points = scene.brush?.points ?? [];
       if (points.length > 0 && between(points.at(-1), centre) > editor.brushRadius / 8) {
         points.push(centre);
+        const { rings } = session;
+        session.previewOf(() => brushed(rings, points, editor.brushRadius, isAdding), this.name);
       }
       scene.brush = { points, centre, radius: editor.brushRadius, isAdding };
     },
@@ -129,7 +131,10 @@ export function brushTool(editor, isAdding) {
     },
     cancel() {
       const isPainting = (scene.brush?.points.length ?? 0) > 0;
-      if (isPainting) scene.brush.points = [];
+      if (isPainting) {
+        scene.brush.points = [];
+        session.withdraw();
+      }
       return isPainting;
     },
     leave() {

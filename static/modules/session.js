@@ -96,9 +96,14 @@ export class Session {
 
   /** Let the hull follow an outline that is not even the page's. */
   preview(rings, tool, claim = this.claim) {
+    this.previewOf(() => rings, tool, claim);
+  }
+
+  /** Likewise, with rings that cost something: they are made only once they can be sent. */
+  previewOf(make, tool, claim = this.claim) {
     if (!this.isEditable) return;
     this.#hasPreview = true;
-    this.#preview.ask({ number: this.frame.number, ...this.#body(rings, claim, tool) });
+    this.#preview.ask({ number: this.frame.number, make, ...this.#body([], claim, tool) });
   }
 
   /** Take a preview back. */
@@ -239,8 +244,14 @@ export class Session {
     else this.adopt(frame);
   }
 
-  async #sendPreview({ number, ...body }) {
-    await send("PUT", `/api/frames/${number}/preview`, body).catch((error) => {
+  async #sendPreview({ number, make, ...body }) {
+    let rings;
+    try {
+      rings = rounded(make());
+    } catch {
+      return; // The polygon library gives up on some strokes; the next move makes another.
+    }
+    await send("PUT", `/api/frames/${number}/preview`, { ...body, rings }).catch((error) => {
       // A crossed outline in the middle of a drag is nothing to complain of.
       if (error.status === undefined) this.#onComplaint(error.message);
     });

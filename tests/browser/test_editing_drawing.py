@@ -1,7 +1,7 @@
 """Drawing outlines in a real browser: each gesture ends on the server, and the hull follows."""
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Page, expect
 
 from tests.app.synthetic import source
 from tests.browser.outlines import (
@@ -125,3 +125,24 @@ def test_lasso_brush_and_eraser_reach_the_server(editing) -> None:
     press_at(page, (62, 62), (62, 70))
     wait_for_revision(page, 4)
     assert area_px(page, 3) < with_brush - 20
+
+
+def test_the_hull_follows_a_stroke_that_is_not_kept_yet(editing) -> None:
+    page = editing()
+    put_square(page, 3)
+    rings, hull = rings_of(page, 3), faces(page)
+    page.keyboard.press("e")
+    page.mouse.move(*place(page, 62, 62))
+    page.mouse.down()
+    page.mouse.move(*place(page, 62, 85), steps=6)
+    expect(page.locator("#preview-chip")).to_be_visible()
+    wait_until(page, lambda: faces(page) != hull)
+    page.keyboard.press("Escape")
+    page.mouse.up()
+    expect(page.locator("#preview-chip")).to_be_hidden()
+    assert faces(page) == hull
+    assert rings_of(page, 3) == rings
+
+
+def faces(page: Page) -> int:
+    return page.request.get(f"{origin(page)}/api/state").json()["hull"]["faces"]
