@@ -7,9 +7,9 @@ from core.experiments.spin import run_spin
 @pytest.fixture(scope="module")
 def study():
     return run_spin(
-        frames=8,
+        frames=6,
         spacing_m=0.6,
-        scatterers=6_000,
+        scatterers=4_000,
         rates_deg_per_s=(3.0,),
         starts=1,
         landscape_points=3,
