@@ -142,5 +142,5 @@ def _finding(trials: Sequence[Trial], shown: SpunHulls) -> str:
         f"{100 * covered[ROUGH]:.0f} % of the target, {iou[ESTIMATED]:.3f} under the estimated "
         f"({100 * covered[ESTIMATED]:.0f} %) and {iou[TRUE]:.3f} under the true one: even then it "
         f"is loose along the axis, since the normals of all image planes lie within "
-        f"{shown.normal_deg:.0f}° of it."
+        f"{shown.normal_deg:.0f}° of it and each image shows the lit side only."
     )
