@@ -136,8 +136,9 @@ def _finding(trials: Sequence[Trial], shown: SpunHulls) -> str:
     covered = {motion: shown.hulls[motion, every].agreement.coverage for motion in iou}
     return (
         f"From an axis up to 9° and a rate up to 5 % off, three stations find the spin within "
-        f"{three} at worst, two within {two}; one station stays {one} off, since a turn of the "
-        f"axis about its line of sight hardly changes its images. The hull of three stations has "
+        f"{three} at worst, two within {two}; one station stays up to {one} off: a turn of "
+        f"the axis about its line of sight hardly changes its images, and its search may end in a "
+        f"local minimum (see the miss that is left). The hull of three stations has "
         f"an IoU of {iou[ROUGH]:.3f} under the rough motion, which keeps "
         f"{100 * covered[ROUGH]:.0f} % of the target, {iou[ESTIMATED]:.3f} under the estimated "
         f"({100 * covered[ESTIMATED]:.0f} %) and {iou[TRUE]:.3f} under the true one: even then it "
