@@ -221,13 +221,51 @@ def line_of_sight_track(
             f"{duration_s:g} s at {pulse_repetition_frequency_hz:g} pulses per second hold "
             f"{pulses} pulse; at least 2 are needed."
         )
-    knots = max(8, int(np.ceil(duration_s / KNOT_INTERVAL_S)) + 1)
-    knot_s = np.linspace(0.0, duration_s, knots)
-    base = _TIMESCALE.from_datetime(start_utc)
-    times = _TIMESCALE.tt_jd(base.whole, base.tt_fraction + knot_s / 86400.0)
-    baseline, azimuth, elevation = _topocentric(satellite, station, times)
-    spline = CubicSpline(knot_s, baseline)
     time_s = np.arange(pulses) / pulse_repetition_frequency_hz
+    return _track(satellite, station, start_utc, time_s, (0.0, duration_s), in_lvlh=True)
+
+
+def inertial_track(
+    satellite: EarthSatellite, station: Station, *, epoch_utc: datetime, time_s: Floats
+) -> LineOfSightTrack:
+    """Return the line of sight to a satellite at chosen times in inertial axes (GCRS).
+
+    For a target that does not keep the local orbital frame: `core.geometry.spin` turns the
+    track into the frame of a spinning one.
+
+    Args:
+        satellite: from `satellite_from_tle` or `satellite_from_elements`.
+        station: the radar.
+        epoch_utc: time 0.
+        time_s: (pulses,) since then, growing; negative before it.
+
+    Raises:
+        ValueError: fewer than two times or times that do not grow, or the orbit cannot be
+            propagated to them.
+    """
+    times = np.asarray(time_s, dtype=np.float64)
+    if times.size < 2:
+        raise ValueError(f"A track needs at least 2 times, got {times.size}.")
+    span_s = (float(times[0]), float(times[-1]))
+    return _track(satellite, station, epoch_utc, times, span_s, in_lvlh=False)
+
+
+def _track(
+    satellite: EarthSatellite,
+    station: Station,
+    epoch_utc: datetime,
+    time_s: Floats,
+    span_s: tuple[float, float],
+    *,
+    in_lvlh: bool,
+) -> LineOfSightTrack:
+    """Return the track at times (pulses,) by a spline through knots over a span around them."""
+    knots = max(8, int(np.ceil((span_s[1] - span_s[0]) / KNOT_INTERVAL_S)) + 1)
+    knot_s = np.linspace(*span_s, knots)
+    base = _TIMESCALE.from_datetime(epoch_utc)
+    times = _TIMESCALE.tt_jd(base.whole, base.tt_fraction + knot_s / 86400.0)
+    baseline, azimuth, elevation = _topocentric(satellite, station, times, in_lvlh=in_lvlh)
+    spline = CubicSpline(knot_s, baseline)
     vector, velocity = spline(time_s), spline(time_s, 1)
     distance = np.linalg.norm(vector, axis=1, keepdims=True)
     unit = vector / distance
@@ -239,14 +277,17 @@ def line_of_sight_track(
         range_m=distance[:, 0],
         azimuth_rad=CubicSpline(knot_s, np.unwrap(azimuth))(time_s),
         elevation_rad=CubicSpline(knot_s, elevation)(time_s),
-        epoch_utc=start_utc.astimezone(UTC).isoformat().replace("+00:00", "Z"),
+        epoch_utc=epoch_utc.astimezone(UTC).isoformat().replace("+00:00", "Z"),
     )
 
 
 def _topocentric(
-    satellite: EarthSatellite, station: Station, times: Time
+    satellite: EarthSatellite, station: Station, times: Time, *, in_lvlh: bool
 ) -> tuple[Floats, Floats, Floats]:
-    """Return station-to-satellite vectors in LVLH metres (n, 3), azimuth and elevation (n,)."""
+    """Return station-to-satellite vectors (n, 3), azimuth and elevation (n,).
+
+    The vectors are in LVLH metres, or in GCRS ones.
+    """
     place = wgs84.latlon(station.latitude_deg, station.longitude_deg, station.height_m)
     state = satellite.at(times)
     position, velocity = state.position.m.T, state.velocity.m_per_s.T
@@ -256,7 +297,8 @@ def _topocentric(
             f"{times[0].utc_iso()}: its elements are too old or it has decayed."
         )
     difference = (satellite - place).at(times)
-    axes = lvlh_axes(position, velocity)
-    baseline = np.einsum("nij,nj->ni", axes, difference.position.m.T)
+    baseline = difference.position.m.T
+    if in_lvlh:
+        baseline = np.einsum("nij,nj->ni", lvlh_axes(position, velocity), baseline)
     altitude, azimuth, _ = difference.altaz()
     return baseline, np.asarray(azimuth.radians), np.asarray(altitude.radians)

@@ -1,12 +1,15 @@
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pytest
+from skyfield.api import load
 
 from core.experiments.demo import DEMO_ORBIT
 from core.formats.element_sets import read_element_sets
+from core.geometry.local_orbital_frame import lvlh_axes
 from core.geometry.orbit import (
     Station,
+    inertial_track,
     line_of_sight_track,
     passes,
     satellite_from_elements,
@@ -99,6 +102,40 @@ def test_the_satellite_flies_along_x_above_the_station(demo_track):
     assert first[0] < -0.8
     assert last[0] > 0.8
     assert np.all(demo_track.line_of_sight[:, 2] < -0.3)
+
+
+def test_an_inertial_track_is_the_lvlh_one_before_its_frame_is_turned(demo_track):
+    satellite = satellite_from_elements(DEMO_ORBIT)
+    epoch_utc = datetime.fromisoformat(demo_track.epoch_utc) + timedelta(seconds=100)
+    chosen = slice(900, 1101, 50)
+    time_s = demo_track.time_s[chosen] - 100
+    track = inertial_track(satellite, BEIJING, epoch_utc=epoch_utc, time_s=time_s)
+    assert track.time_s[0] == pytest.approx(-10)
+    assert track.range_m == pytest.approx(demo_track.range_m[chosen], abs=0.1)
+    assert track.elevation_rad == pytest.approx(demo_track.elevation_rad[chosen], abs=1e-6)
+    state = satellite.at(load.timescale(builtin=True).from_datetime(epoch_utc))
+    axes = lvlh_axes(state.position.m, state.velocity.m_per_s)
+    assert axes @ track.line_of_sight[2] == pytest.approx(
+        demo_track.line_of_sight[chosen][2], abs=1e-6
+    )
+
+
+def test_an_inertial_rate_is_the_finite_difference():
+    satellite = satellite_from_elements(DEMO_ORBIT)
+    epoch_utc, time_s = datetime(2016, 3, 11, 17, 15, tzinfo=UTC), np.array([-0.1, 0.0, 0.1])
+    track = inertial_track(satellite, BEIJING, epoch_utc=epoch_utc, time_s=time_s)
+    sight, rate = track.line_of_sight, track.line_of_sight_rate_per_s
+    assert rate[1] == pytest.approx((sight[2] - sight[0]) / 0.2, abs=1e-7)
+
+
+def test_an_inertial_track_of_one_time_is_refused():
+    with pytest.raises(ValueError, match="at least 2 times, got 1"):
+        inertial_track(
+            satellite_from_elements(DEMO_ORBIT),
+            BEIJING,
+            epoch_utc=datetime(2016, 3, 11, 17, tzinfo=UTC),
+            time_s=np.zeros(1),
+        )
 
 
 def test_a_wrong_checksum_is_refused():
