@@ -7,8 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from app.commands.console import show_table
+from core.experiments.pictures import write_pictures
+from core.experiments.report import write_report
 from core.experiments.results import Results
+from core.experiments.study import Study
 from core.formats.files import checked_output, reason, written_aside
+from core.formats.surfaces import write_surface
 from core.radar.phase_history import PhaseHistory
 
 STANDARD_OUTPUT = "-"
@@ -77,6 +81,19 @@ def show_results(results: Results, json_to: str | None) -> None:
         return
     for table in (*results.tables, results.figures_table()):
         show_table(table)
+
+
+def write_study(folder: Path, study: Study) -> None:
+    """Write an experiment's numbers, pictures, page and, where it has one, its hull in a folder.
+
+    Raises:
+        ValueError: a file cannot be written.
+    """
+    write_pictures(study.pictures, folder)
+    write_report(folder / "report.html", study.results, study.pictures)
+    write_json(str(folder / "results.json"), study.results.to_json())
+    if not study.hull.is_empty:
+        write_surface(folder / "hull.glb", study.hull)
 
 
 def echo_facts(history: PhaseHistory) -> dict[str, Any]:

@@ -25,14 +25,14 @@ figcaption { color: #98a5b8; margin-top: .3rem; }
 
 
 def write_report(path: Path, results: Results, pictures: Sequence[Picture]) -> None:
-    """Write a page with every table and picture of an experiment in it.
+    """Write a page with every table and picture of an experiment in it, all figures at its end.
 
     Raises:
         ValueError: the file cannot be written.
     """
-    tables = (results.figures_table(), *results.tables)
     settings = "; ".join(f"{name}: {_text(value)}" for name, value in results.settings.items())
-    body = "".join(_table(table) for table in tables) + "".join(map(_figure, pictures))
+    tables = "".join(map(_table, results.tables))
+    body = tables + "".join(map(_figure, pictures)) + _table(results.figures_table())
     title = f"radarhull experiment {results.name}"
     finding = f"<p><strong>{escape(results.finding)}</strong></p>" if results.finding else ""
     page = (
