@@ -26,6 +26,7 @@ from core.experiments.factorization import run_factorization
 from core.experiments.fusion import run_fusion
 from core.experiments.limited import run_limited
 from core.experiments.measurement.run import run_measurement
+from core.experiments.noise import run_noise
 from core.experiments.physics.run import run_physics
 from core.experiments.study import Study
 from core.experiments.temple import run_temple
@@ -36,6 +37,7 @@ Experiment = Literal[
     "limited",
     "fusion",
     "factorization",
+    "noise",
     "temple",
     "physics",
     "measurement",
@@ -46,6 +48,7 @@ STUDIES: Mapping[str, Callable[..., Study]] = {
     "limited": run_limited,
     "fusion": run_fusion,
     "factorization": run_factorization,
+    "noise": run_noise,
     "temple": run_temple,
     "physics": run_physics,
     "measurement": run_measurement,
@@ -88,7 +91,8 @@ def experiment(
     lengths, by the shadow rule and by the paper's strict rule. limited: the same target from one
     pass over Beijing, radar alone, and which directions stay unobserved. fusion: that pass with a
     telescope beside the radar. factorization: three lines of an MRO-like orbiter by factorization,
-    by energy accumulation and by our hull. temple: the hull of a real object from 16 calibrated
+    by energy accumulation and by our hull. noise: accuracy against noise, resolution and number of
+    frames, one at a time. temple: the hull of a real object from 16 calibrated
     photographs (Middlebury templeSparseRing). physics: scattering, coherent intervals, imaging,
     focusing, registration and optics against theory and measured data. measurement: lengths and
     attitude of two known targets from exact outlines and from echoes, how often intervals hold the
@@ -101,7 +105,7 @@ def experiment(
         out: folder to write results.json, report.html, hull.glb and the pictures into (physics and
             measurement have no hull).
         part: parts of the physics or the measurement to run, all by default.
-        views: number of views (wide and factorization only; 80 by default).
+        views: number of views (wide, factorization and noise only; 80 by default).
         spacing_m: voxel spacing in metres; 0.15, or 0.2 (factorization) or 0.0005 (temple) by
             default.
         snr_db: signal-to-noise ratio per pulse and frequency sample (not temple, not physics, not
