@@ -1,11 +1,13 @@
 """`radarhull experiment`."""
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import tyro
 
+from app.commands.all_experiments import run_all
 from app.commands.console import progress_bars
 from app.commands.options import (
     JsonTo,
@@ -16,7 +18,6 @@ from app.commands.options import (
     checked_snr_db,
 )
 from app.commands.outputs import (
-    STANDARD_OUTPUT,
     checked_folder,
     checked_json,
     show_results,
@@ -41,6 +42,7 @@ Experiment = Literal[
     "temple",
     "physics",
     "measurement",
+    "all",
 ]
 
 STUDIES: Mapping[str, Callable[..., Study]] = {
@@ -96,14 +98,18 @@ def experiment(
     photographs (Middlebury templeSparseRing). physics: scattering, coherent intervals, imaging,
     focusing, registration and optics against theory and measured data. measurement: lengths and
     attitude of two known targets from exact outlines and from echoes, how often intervals hold the
-    truth, and key points against noise (some five minutes).
+    truth, and key points against noise (some five minutes). all: every one of these in
+    turn with its own settings, each into its own folder of --out, with a page index.html that tells
+    what each found and links its report, and one results.json; one that fails does not stop the
+    others, and the exit code is then 1.
 
     Args:
         name: which experiment.
         json: write settings and figures as JSON to this file, or to standard output for "-".
-        data: folder of the photographs (temple), or of the measured Gotcha history (physics).
+        data: folder of the photographs (temple; all, which skips the temple without it), or of the
+            measured Gotcha history (physics).
         out: folder to write results.json, report.html, hull.glb and the pictures into (physics and
-            measurement have no hull).
+            measurement have no hull); all needs it.
         part: parts of the physics or the measurement to run, all by default.
         views: number of views (wide, factorization and noise only; 80 by default).
         spacing_m: voxel spacing in metres; 0.15, or 0.2 (factorization) or 0.0005 (temple) by
@@ -121,6 +127,9 @@ def experiment(
         "--seed": None if seed is None else checked_seed(seed),
         "--data": data,
     }
+    if name == "all":
+        _all(options, out, json)
+        return
     run = STUDIES[name]
     settings = _settings(name, run, options)
     if out is not None:
@@ -130,8 +139,26 @@ def experiment(
     if out is not None:
         write_study(out, study)
     show_results(study.results, json)
-    if json != STANDARD_OUTPUT and study.results.finding:
-        print(study.results.finding)
+
+
+def _all(options: Mapping[str, object], out: Path | None, json: str | None) -> None:
+    foreign = [
+        option for option, value in options.items() if value is not None and option != "--data"
+    ]
+    _refuse("all", foreign)
+    if out is None:
+        raise ValueError(
+            "All experiments write a folder each and a page that lists them: --out FOLDER."
+        )
+    data = options["--data"]
+    run_all(STUDIES, NEEDED_DATA, data if isinstance(data, Path) else None, out, json)
+
+
+def _refuse(name: str, foreign: Sequence[str]) -> None:
+    if foreign:
+        raise ValueError(
+            f"The {name} experiment has no use for {', '.join(foreign)}; leave it out."
+        )
 
 
 def _settings(
@@ -145,10 +172,7 @@ def _settings(
     given = {option: value for option, value in options.items() if value is not None}
     taken = inspect.signature(run).parameters
     foreign = [option for option in given if _PARAMETERS[option] not in taken]
-    if foreign:
-        raise ValueError(
-            f"The {name} experiment has no use for {', '.join(foreign)}; leave it out."
-        )
+    _refuse(name, foreign)
     if name in NEEDED_DATA and "--data" not in given:
         raise ValueError(
             f"The {name} experiment needs its data: --data FOLDER with {NEEDED_DATA[name]}."

@@ -77,10 +77,16 @@ def show_results(results: Results, json_to: str | None) -> None:
     """Print an experiment's tables, or write its JSON to a file or, for "-", standard output."""
     if json_to is not None:
         write_json(json_to, results.to_json())
-    if json_to == STANDARD_OUTPUT:
-        return
+    if json_to != STANDARD_OUTPUT:
+        show_tables(results)
+
+
+def show_tables(results: Results) -> None:
+    """Print an experiment's tables, its figures last, and what was found."""
     for table in (*results.tables, results.figures_table()):
         show_table(table)
+    if results.finding:
+        print(results.finding)
 
 
 def write_study(folder: Path, study: Study) -> None:
