@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from matplotlib.figure import Figure as Canvas
+from matplotlib.ticker import LogLocator
 
 from core.experiments.accuracy_conditions import Accuracy
 from core.experiments.pictures import Picture
@@ -17,6 +18,9 @@ MEASURES: Mapping[str, tuple[str, Callable[[Accuracy], float | None]]] = {
     "mean attitude error": ("°", lambda each: each.attitude_error_deg),
 }
 """What is told of an accuracy: its unit, and how it is read."""
+
+
+COLOURS = ("#58b4ff", "#ffb454")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -101,18 +105,23 @@ def curves_picture(curves: Sequence[Curve], *, name: str, caption: str) -> Pictu
 
 
 def _show(cell: Any, curve: Curve, measures: Sequence[str]) -> None:
-    for measure in measures:
+    for measure, colour in zip(measures, COLOURS, strict=False):
         spreads = {value: curve.spread(value, measure) for value in curve.found}
         known = {value: spread for value, spread in spreads.items() if spread is not None}
         mean, least, greatest = (
             zip(*known.values(), strict=True) if known else ((), (), ())  # all lost
         )
-        (line,) = cell.plot(list(known), mean, "o-", markersize=4, label=measure)
-        cell.fill_between(list(known), least, greatest, color=line.get_color(), alpha=0.25)
+        cell.plot(list(known), mean, "o-", color=colour, markersize=4, label=measure)
+        cell.fill_between(list(known), least, greatest, color=colour, alpha=0.25, linewidth=0)
     cell.axvline(curve.centre, color="#8b96a6", linestyle=":", linewidth=1, label="centre")
     unit = MEASURES[measures[0]][0]
-    # Errors run over two decades, agreement from nothing to all.
-    cell.set(**({"yscale": "log"} if unit else {"ylim": (0, 1.03)}))
+    if unit:  # errors run over two decades, agreement from nothing to all
+        cell.set_yscale("log")
+        cell.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        cell.yaxis.set_major_formatter("{x:g}")
+        cell.yaxis.set_minor_formatter("")
+    else:
+        cell.set_ylim(0, 1.03)
     cell.set_xlabel(f"{curve.factor} ({curve.unit})" if curve.unit != "frames" else "frames")
     cell.set_ylabel(f"{measures[0]} ({unit})" if unit else "share")
     cell.legend()

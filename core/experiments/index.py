@@ -27,14 +27,14 @@ MOST_ROWS = 12
 
 STYLE = """
 body { max-width: 1720px; }
-nav { color: #98a5b8; } a { color: #58b4ff; text-decoration: none; } a:hover { text-decoration:
-underline; }
+.overview { max-width: 720px; } .overview td { padding: .15rem .7rem; }
+a { color: #58b4ff; text-decoration: none; } a:hover { text-decoration: underline; }
 section { display: grid; grid-template-columns: minmax(280px, 27%) 1fr; gap: 1.6rem;
           border-top: 1px solid #2b3340; padding: 1.4rem 0; margin-top: 1.4rem; }
 section > div { min-width: 0; } section img { width: 100%; border-radius: 6px; display: block; }
 section header { display: flex; flex-wrap: wrap; gap: .3rem 1rem; align-items: baseline; }
-section header h2 { margin: 0; font-size: 1.3rem; }
 section h2 { margin-top: 1rem; font-size: 1rem; color: #98a5b8; }
+section header h2 { margin: 0; font-size: 1.3rem; color: #eef1f6; }
 section td, section th { padding: .2rem .6rem; font-size: 14px; }
 .meta { color: #98a5b8; } .badge { border-radius: 4px; padding: 0 .5rem; font-size: 13px; }
 .badge.done { background: #17351f; color: #7bd88f; } .note { color: #98a5b8; }
@@ -93,8 +93,13 @@ class Entry:
 
 
 def names_of(pictures: Sequence[Picture]) -> tuple[str, ...]:
-    """Return the names of pictures in the order in which a thumbnail is taken: a hull's first."""
-    return tuple(sorted((each.name for each in pictures), key=lambda name: "-hull" not in name))
+    """Return pictures' names, first what tells most at a glance: curves, or else the hull."""
+    telling = ("-curves", "-hull")
+
+    def rank(name: str) -> int:
+        return next((place for place, part in enumerate(telling) if part in name), len(telling))
+
+    return tuple(sorted((each.name for each in pictures), key=rank))
 
 
 def summary(entries: Sequence[Entry]) -> Results:
@@ -137,11 +142,10 @@ def write_index(path: Path, entries: Sequence[Entry]) -> None:
         ValueError: the page cannot be written.
     """
     told = summary(entries)
-    links = " · ".join(f'<a href="#{quote(each.name)}">{escape(each.name)}</a>' for each in entries)
     sections = "".join(_section(each, path.parent) for each in entries)
     body = (
-        f"<p><strong>{escape(told.finding)}</strong></p><nav>{links}</nav>"
-        f"{table_html(told.tables[0])}{sections}"
+        f"<p><strong>{escape(told.finding)}</strong></p>"
+        f'<table class="overview">{"".join(map(_overview_row, entries))}</table>{sections}'
     )
     write_page(path, "radarhull experiments", body, style=STYLE)
 
@@ -156,13 +160,27 @@ def _overview(entries: Sequence[Entry]) -> Table:
     )
 
 
+def _overview_row(entry: Entry) -> str:
+    met, wanted = entry.targets()
+    verdict = "" if not wanted else f' class="{"met" if met == wanted else "missed"}"'
+    targets = f"{met} of {wanted} targets met" if wanted else ""
+    return (
+        f'<tr><td><a href="#{quote(entry.name)}">{escape(entry.name)}</a></td>'
+        f"<td>{_badge(entry)}</td><td{verdict}>{targets}</td><td>{_duration(entry.wall_s)}</td></tr>"
+    )
+
+
+def _badge(entry: Entry) -> str:
+    return f'<span class="badge {entry.outcome}">{entry.outcome}</span>'
+
+
 def _section(entry: Entry, folder: Path) -> str:
     place = quote(entry.name)
     meta = [f"targets met: {_targets(entry)}"] if entry.targets()[1] else []
     meta += [_duration(entry.wall_s)] if entry.outcome != "skipped" else []
     head = (
         f"<header><h2>{escape(entry.name)}</h2>"
-        f'<span class="badge {entry.outcome}">{entry.outcome}</span>'
+        f"{_badge(entry)}"
         f'<span class="meta">{escape(" · ".join(meta))}</span>{_links(entry)}</header>'
     )
     told = entry.problem if entry.results is None else entry.results.finding

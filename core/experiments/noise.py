@@ -16,6 +16,7 @@ from core.experiments.accuracy_conditions import (
 from core.experiments.accuracy_curves import MEASURES, Curve, curves_picture
 from core.experiments.frame_pictures import OutlinedFrame, frames_picture
 from core.experiments.hull_pictures import error_pictures, sides_picture
+from core.experiments.noise_finding import noise_finding
 from core.experiments.pictures import Picture
 from core.experiments.results import Figure, Results
 from core.experiments.study import Progress, Study
@@ -31,9 +32,6 @@ FRAMES = (10, 20, 40, 80)
 
 WANTED = {"IoU": ">= 0.75", "mean length error": "<= 2 %"}
 """At the centre, as of the wide experiment."""
-
-GOOD_PERCENT = 2.0
-"""Mean error of lengths up to which a hull counts as good to measure."""
 
 NAMES = {
     "signal_to_noise_db": ("signal-to-noise ratio", "dB"),
@@ -145,7 +143,7 @@ def run_noise(
             *(figure for curve in curves.values() for figure in curve.figures()),
         ),
         tables=tuple(curve.table() for curve in curves.values()),
-        finding=_finding(curves, centre),
+        finding=noise_finding(curves, centre),
     )
     hull = found.hulls[centre]
     pictures = _pictures(list(curves.values()), varied, found, hull, target)
@@ -212,47 +210,6 @@ def _centre_figures(curve: Curve) -> list[Figure]:
         )
         for measure, (unit, _) in MEASURES.items()
     ]
-
-
-def _finding(curves: Mapping[str, Curve], centre: Condition) -> str:
-    return (
-        f"At {centre.frames} frames of {centre.resolution_m:g} m and "
-        f"{curves['signal_to_noise_db'].named(centre.signal_to_noise_db)}, "
-        f"{_told(curves['frames'], centre.frames)}; "
-        + "; ".join(f"{_reach(curve)} ({_extremes(curve)})" for curve in curves.values())
-        + "."
-    )
-
-
-def _reach(curve: Curve) -> str:
-    """Return for which values of a factor lengths are good."""
-    errors = {value: curve.mean(value, "mean length error") for value in curve.found}
-    good = [value for value, error in errors.items() if error is not None and error <= GOOD_PERCENT]
-    within = f"lengths within {GOOD_PERCENT:g} % on average"
-    if not good:
-        return f"no {curve.factor} gives {within}"
-    reach = " to ".join(dict.fromkeys(curve.named(value) for value in (min(good), max(good))))
-    return f"{within} at {reach}"
-
-
-def _extremes(curve: Curve) -> str:
-    first, last = min(curve.found), max(curve.found)
-    return ", ".join(
-        f"at {curve.named(value)} {_told(curve, value)}" for value in dict.fromkeys((first, last))
-    )
-
-
-def _told(curve: Curve, value: float) -> str:
-    agreement, length, angle = (
-        curve.mean(value, measure)
-        for measure in ("IoU", "mean length error", "mean attitude error")
-    )
-    lines = (
-        "its lines are lost"
-        if length is None or angle is None
-        else f"lines err by {length:.1f} % and {angle:.1f}°"
-    )
-    return f"IoU is {agreement:.3f}, {lines}"
 
 
 def _pictures(

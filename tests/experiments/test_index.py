@@ -50,6 +50,7 @@ def page(entries, tmp_path):
 
 
 def section(page, name):
+    assert page.count(f'<a href="#{name}">{name}</a>') == 1
     return re.search(rf'<section id="{name}">.*?</section>', page, re.DOTALL)[0]
 
 

@@ -54,7 +54,7 @@ def test_every_curve_passes_through_the_centre(study):
     through = {value(study, f"{name}: IoU") for name in ("centre", "20 dB", "0.4 m", "16 frames")}
     assert len(through) == 1
     assert f"IoU is {through.pop():.3f}" in study.results.finding
-    assert "no resolution gives lengths within 2 %" in study.results.finding
+    assert "resolution: nowhere lengths within 2 %" in study.results.finding
     assert [table.rows[-1][1] for table in study.results.tables[::2]] == [
         study.results.tables[1].rows[0][1]
     ] * 2
