@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from app.arguments import parsed_call
 from app.commands.bench import bench
+from app.commands.console import sentence_of
 from app.commands.experiment import experiment
 from app.commands.image import image
 from app.commands.import_ import import_
@@ -14,7 +15,6 @@ from app.commands.measure import measure
 from app.commands.reconstruct import reconstruct
 from app.commands.serve import serve
 from app.commands.simulate import simulate
-from core.formats.files import reason
 
 PROGRAM = "radarhull"
 EXIT_BAD_INPUT = 2
@@ -47,7 +47,7 @@ def main(arguments: list[str] | None = None) -> None:
     try:
         _run(list(sys.argv[1:] if arguments is None else arguments))
     except (ValueError, MemoryError, OSError) as error:
-        _end(_sentence(error), EXIT_BAD_INPUT)
+        _end(sentence_of(error), EXIT_BAD_INPUT)
     except KeyboardInterrupt:
         _end("stopped.", EXIT_STOPPED)
 
@@ -83,15 +83,6 @@ def _help() -> str:
         for name, command in _COMMANDS.items()
     ]
     return _HELP + "\n".join(lines)
-
-
-def _sentence(error: ValueError | MemoryError | OSError) -> str:
-    if isinstance(error, MemoryError):
-        return f"The memory does not suffice{f': {error}' if str(error) else ''}."
-    if isinstance(error, OSError):
-        place = f"{error.filename}: " if error.filename else ""
-        return f"{place}{reason(error)}."
-    return " ".join(str(error).split())
 
 
 def _end(sentence: str, code: int) -> None:

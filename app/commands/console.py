@@ -15,6 +15,7 @@ from rich.progress import (
 from rich.table import Table as RichTable
 
 from core.experiments.results import Table
+from core.formats.files import reason
 
 Report = Callable[[str, int, int], None]
 
@@ -47,3 +48,14 @@ def show_table(table: Table) -> None:
     for row in table.rows:
         shown.add_row(*row)
     Console().print(shown)
+
+
+def sentence_of(error: Exception) -> str:
+    """Return what a person is told of an error, in one line."""
+    if isinstance(error, MemoryError):
+        return f"The memory does not suffice{f': {error}' if str(error) else ''}."
+    if isinstance(error, OSError):
+        place = f"{error.filename}: " if error.filename else ""
+        return f"{place}{reason(error)}."
+    text = " ".join(str(error).split())
+    return text if isinstance(error, ValueError) else f"{type(error).__name__}: {text}"

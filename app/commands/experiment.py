@@ -1,11 +1,13 @@
 """`radarhull experiment`."""
 
+import inspect
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import tyro
 
+from app.commands.all_experiments import run_all
 from app.commands.console import progress_bars
 from app.commands.options import (
     JsonTo,
@@ -16,38 +18,66 @@ from app.commands.options import (
     checked_snr_db,
 )
 from app.commands.outputs import (
-    STANDARD_OUTPUT,
     checked_folder,
     checked_json,
     show_results,
-    write_json,
+    write_study,
 )
 from core.experiments.factorization import run_factorization
 from core.experiments.fusion import run_fusion
 from core.experiments.limited import run_limited
-from core.experiments.measurement.run import PARTS as MEASUREMENT_PARTS
 from core.experiments.measurement.run import run_measurement
-from core.experiments.physics.run import PARTS, run_physics
-from core.experiments.pictures import Picture, write_pictures
-from core.experiments.report import write_report
-from core.experiments.results import Results
+from core.experiments.noise import run_noise
+from core.experiments.physics.run import run_physics
+from core.experiments.shadow import run_shadow
 from core.experiments.spin import run_spin
 from core.experiments.study import Study
 from core.experiments.temple import run_temple
 from core.experiments.wide import run_wide
-from core.formats.surfaces import write_surface
 
 Experiment = Literal[
-    "wide", "limited", "fusion", "factorization", "spin", "temple", "physics", "measurement"
+    "wide",
+    "limited",
+    "fusion",
+    "factorization",
+    "shadow",
+    "spin",
+    "noise",
+    "temple",
+    "physics",
+    "measurement",
+    "all",
 ]
 
 STUDIES: Mapping[str, Callable[..., Study]] = {
+    "wide": run_wide,
     "limited": run_limited,
     "fusion": run_fusion,
     "factorization": run_factorization,
+    "shadow": run_shadow,
     "spin": run_spin,
+    "noise": run_noise,
+    "temple": run_temple,
+    "physics": run_physics,
+    "measurement": run_measurement,
 }
-"""Experiments that hand out pictures and a hull too; they take a spacing, noise and a seed."""
+"""Every experiment. What a function's signature names (see `_PARAMETERS`) is an option of its
+experiment, and one without a default must be given."""
+
+NEEDED_DATA: Mapping[str, str] = {
+    "temple": "templeSR_par.txt and the PNG files of Middlebury's templeSparseRing"
+}
+"""What --data must hold for an experiment that cannot run without it."""
+
+_PARAMETERS = {
+    "--part": "parts",
+    "--views": "views",
+    "--spacing-m": "spacing_m",
+    "--snr-db": "signal_to_noise_db",
+    "--seed": "seed",
+    "--data": "data",
+}
+"""Which parameter of an experiment's function each option sets."""
 
 
 def experiment(
@@ -69,108 +99,90 @@ def experiment(
     lengths, by the shadow rule and by the paper's strict rule. limited: the same target from one
     pass over Beijing, radar alone, and which directions stay unobserved. fusion: that pass with a
     telescope beside the radar. factorization: three lines of an MRO-like orbiter by factorization,
-    by energy accumulation and by our hull. spin: a spinning target seen by one to three stations,
-    its axis and rate estimated from its outlines. temple: the hull of a real object from 16
-    calibrated photographs (Middlebury templeSparseRing). physics: scattering, coherent intervals,
-    imaging, focusing, registration and optics against theory and measured data. measurement:
-    lengths and attitude of two known targets from exact outlines and from echoes, how often
-    intervals hold the truth, and key points against noise (some five minutes).
+    by energy accumulation and by our hull. shadow: rules of voting on
+    targets that shadow themselves. spin: axis and rate of a spinning target seen by several
+    stations, and its hull. noise: accuracy against noise, resolution and number of
+    frames, one at a time. temple: the hull of a real object from 16 calibrated
+    photographs (Middlebury templeSparseRing). physics: scattering, coherent intervals, imaging,
+    focusing, registration and optics against theory and measured data. measurement: lengths and
+    attitude of two known targets from exact outlines and from echoes, how often intervals hold the
+    truth, and key points against noise (some five minutes). all: every one of these in
+    turn with its own settings, each into its own folder of --out, with a page index.html that tells
+    what each found and links its report, and one results.json; one that fails does not stop the
+    others, and the exit code is then 1.
 
     Args:
         name: which experiment.
         json: write settings and figures as JSON to this file, or to standard output for "-".
-        data: folder of the photographs (temple), or of the measured Gotcha history (physics).
-        out: folder to write results.json, report.html, hull.glb and the pictures into (not wide,
-            not temple; physics and measurement have no hull).
+        data: folder of the photographs (temple; all, which skips the temple without it), or of the
+            measured Gotcha history (physics).
+        out: folder to write results.json, report.html, hull.glb and the pictures into (physics and
+            measurement have no hull); all needs it.
         part: parts of the physics or the measurement to run, all by default.
-        views: number of views (wide only; 80 by default).
+        views: number of views (wide, factorization and noise only; 80 by default).
         spacing_m: voxel spacing in metres; 0.15, or 0.2 (factorization) or 0.0005 (temple) by
             default.
-        snr_db: signal-to-noise ratio per pulse and frequency sample (not temple, not physics; 20 dB
-            by default).
-        seed: of the random generator (not temple, not physics; 1 by default).
+        snr_db: signal-to-noise ratio per pulse and frequency sample (not temple, not physics, not
+            measurement; 20 dB by default).
+        seed: of the random generator (not temple, not physics, not measurement; 1 by default).
     """
     checked_json(json)
-    if name in ("physics", "measurement"):
-        _refuse_foreign(name, {"--views": views, "--spacing-m": spacing_m, "--snr-db": snr_db})
-        _refuse_foreign(name, {"--seed": seed})
-        if name == "measurement":
-            _refuse_foreign(name, {"--data": data})
-        _pictured(name, part, data, out, json)
-        return
-    _refuse_foreign(name, {"--part": part or None})
-    chosen = {
-        "spacing_m": spacing_m,
-        "signal_to_noise_db": None if snr_db is None else checked_snr_db(snr_db),
-        "seed": None if seed is None else checked_seed(seed),
+    options = {
+        "--part": part or None,
+        "--views": views,
+        "--spacing-m": spacing_m,
+        "--snr-db": None if snr_db is None else checked_snr_db(snr_db),
+        "--seed": None if seed is None else checked_seed(seed),
+        "--data": data,
     }
-    if name in STUDIES:
-        _refuse_foreign(name, {"--views": views, "--data": data})
-        _study(STUDIES[name], chosen, out, json)
+    if name == "all":
+        _all(options, out, json)
         return
-    _refuse_foreign(name, {"--out": out})
-    if name == "wide":
-        _refuse_foreign(name, {"--data": data})
-        with progress_bars() as report:
-            results = run_wide(**_given({**chosen, "views": views}), progress=report)
-    else:
-        _refuse_foreign(name, {"--views": views, "--snr-db": snr_db, "--seed": seed})
-        if data is None:
-            raise ValueError(
-                "The temple experiment needs its photographs: --data FOLDER with "
-                "templeSR_par.txt and the PNG files of Middlebury's templeSparseRing."
-            )
-        with progress_bars() as report:
-            results = run_temple(data, spacing_m=spacing_m, progress=report)
-    show_results(results, json)
-
-
-def _given(settings: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in settings.items() if value is not None}
-
-
-def _study(
-    run: Callable[..., Study], settings: Mapping[str, Any], out: Path | None, json: str | None
-) -> None:
+    run = STUDIES[name]
+    settings = _settings(name, run, options)
     if out is not None:
         checked_folder(out)
     with progress_bars() as report:
-        study = run(**_given(settings), progress=report)
+        study = run(**settings, progress=report)
     if out is not None:
-        _write(out, study.results, study.pictures)
-        if not study.hull.is_empty:
-            write_surface(out / "hull.glb", study.hull)
+        write_study(out, study)
     show_results(study.results, json)
-    if json != STANDARD_OUTPUT:
-        print(study.results.finding)
 
 
-def _write(out: Path, results: Results, pictures: Sequence[Picture]) -> None:
-    write_pictures(pictures, out)
-    write_report(out / "report.html", results, pictures)
-    write_json(str(out / "results.json"), results.to_json())
+def _all(options: Mapping[str, object], out: Path | None, json: str | None) -> None:
+    foreign = [
+        option for option, value in options.items() if value is not None and option != "--data"
+    ]
+    _refuse("all", foreign)
+    if out is None:
+        raise ValueError(
+            "All experiments write a folder each and a page that lists them: --out FOLDER."
+        )
+    data = options["--data"]
+    run_all(STUDIES, NEEDED_DATA, data if isinstance(data, Path) else None, out, json)
 
 
-def _pictured(
-    name: Experiment,
-    parts: tuple[str, ...],
-    gotcha: Path | None,
-    out: Path | None,
-    json: str | None,
-) -> None:
-    if out is not None:
-        checked_folder(out)
-    with progress_bars() as report:
-        if name == "measurement":
-            results, pictures = run_measurement(parts=parts or MEASUREMENT_PARTS, progress=report)
-        else:
-            results, pictures = run_physics(parts=parts or PARTS, gotcha=gotcha, progress=report)
-    if out is not None:
-        _write(out, results, pictures)
-    show_results(results, json)
+def _refuse(name: str, foreign: Sequence[str]) -> None:
+    if foreign:
+        raise ValueError(
+            f"The {name} experiment has no use for {', '.join(foreign)}; leave it out."
+        )
 
 
-def _refuse_foreign(name: Experiment, options: Mapping[str, object]) -> None:
-    given = [option for option, value in options.items() if value is not None]
-    if given:
-        raise ValueError(f"The {name} experiment has no use for {', '.join(given)}; leave it out.")
+def _settings(
+    name: str, run: Callable[..., Study], options: Mapping[str, object]
+) -> dict[str, Any]:
+    """Return the options that were given as an experiment's arguments.
+
+    Raises:
+        ValueError: it has no use for one, or cannot do without one.
+    """
+    given = {option: value for option, value in options.items() if value is not None}
+    taken = inspect.signature(run).parameters
+    foreign = [option for option in given if _PARAMETERS[option] not in taken]
+    _refuse(name, foreign)
+    if name in NEEDED_DATA and "--data" not in given:
+        raise ValueError(
+            f"The {name} experiment needs its data: --data FOLDER with {NEEDED_DATA[name]}."
+        )
+    return {_PARAMETERS[option]: value for option, value in given.items()}

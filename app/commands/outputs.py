@@ -7,8 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from app.commands.console import show_table
+from core.experiments.pictures import write_pictures
+from core.experiments.report import write_report
 from core.experiments.results import Results
+from core.experiments.study import Study
 from core.formats.files import checked_output, reason, written_aside
+from core.formats.surfaces import write_surface
 from core.radar.phase_history import PhaseHistory
 
 STANDARD_OUTPUT = "-"
@@ -73,10 +77,29 @@ def show_results(results: Results, json_to: str | None) -> None:
     """Print an experiment's tables, or write its JSON to a file or, for "-", standard output."""
     if json_to is not None:
         write_json(json_to, results.to_json())
-    if json_to == STANDARD_OUTPUT:
-        return
+    if json_to != STANDARD_OUTPUT:
+        show_tables(results)
+
+
+def show_tables(results: Results) -> None:
+    """Print an experiment's tables, its figures last, and what was found."""
     for table in (*results.tables, results.figures_table()):
         show_table(table)
+    if results.finding:
+        print(results.finding)
+
+
+def write_study(folder: Path, study: Study) -> None:
+    """Write an experiment's numbers, pictures, page and, where it has one, its hull in a folder.
+
+    Raises:
+        ValueError: a file cannot be written.
+    """
+    write_pictures(study.pictures, folder)
+    write_report(folder / "report.html", study.results, study.pictures)
+    write_json(str(folder / "results.json"), study.results.to_json())
+    if not study.hull.is_empty:
+        write_surface(folder / "hull.glb", study.hull)
 
 
 def echo_facts(history: PhaseHistory) -> dict[str, Any]:

@@ -36,8 +36,7 @@ def frames_picture(
         caption: what the frames are.
         most: frames that are shown.
     """
-    chosen = np.unique(np.linspace(0, len(found) - 1, most).round().astype(int))
-    shown = [found[index] for index in chosen]
+    shown = _evenly(found, most)
     mesh = target.mesh()
     half_m = 1.04 * float(np.linalg.norm(mesh.vertices, axis=1).max())
     columns = min(4, len(shown))
@@ -56,6 +55,47 @@ def frames_picture(
     return Picture(name=name, caption=caption, draw=draw, size_in=(3.0 * columns, 3.15 * rows))
 
 
+def photographs_picture(
+    found: Sequence[OutlinedFrame], *, name: str, caption: str, most: int = 8
+) -> Picture:
+    """Picture some whole photographs, evenly chosen, with the outlines found.
+
+    Args:
+        found: photographs and their silhouettes.
+        name: of the picture's file.
+        caption: what they are.
+        most: photographs that are shown.
+    """
+    shown = _evenly(found, most)
+    columns = min(4, len(shown))
+    rows = -(-len(shown) // columns)
+    high, wide = shown[0].frame.shape
+
+    def draw(canvas: Canvas) -> None:
+        cells = canvas.subplots(rows, columns, squeeze=False)
+        for cell in cells.flat:
+            cell.set_axis_off()
+        for cell, each in zip(cells.flat, shown, strict=False):
+            cell.imshow(each.frame.amplitude, cmap="gray")
+            _draw_outline(cell, each.silhouette, OURS, None)
+            cell.set_title(each.frame.label)
+
+    size_in = (3.0 * columns, (3.0 * high / wide + 0.3) * rows)
+    return Picture(name=name, caption=caption, draw=draw, size_in=size_in)
+
+
+def _evenly(found: Sequence[OutlinedFrame], most: int) -> list[OutlinedFrame]:
+    chosen = np.unique(np.linspace(0, len(found) - 1, most).round().astype(int))
+    return [found[index] for index in chosen]
+
+
+def _draw_outline(cell: Any, outline: Silhouette, colour: str, name: str | None) -> None:
+    for number, ring in enumerate(outline.rings):
+        closed = np.vstack([ring, ring[:1]])
+        label = name if number == 0 else None
+        cell.plot(closed[:, 1], closed[:, 0], color=colour, linewidth=0.9, label=label)
+
+
 def _show(
     cell: Any, each: OutlinedFrame, truth: Silhouette, half_m: float, *, has_names: bool
 ) -> None:
@@ -64,10 +104,7 @@ def _show(
     level = frame.decibels(floor_db=-45) if is_radar else np.sqrt(frame.amplitude)
     cell.imshow(level, cmap="inferno" if is_radar else "gray")
     for outline, colour, name in ((truth, TRUTH, "true"), (each.silhouette, OURS, "found")):
-        for number, ring in enumerate(outline.rings):
-            closed = np.vstack([ring, ring[:1]])
-            label = name if has_names and number == 0 else None
-            cell.plot(closed[:, 1], closed[:, 0], color=colour, linewidth=0.9, label=label)
+        _draw_outline(cell, outline, colour, name if has_names else None)
     row, column = frame.projection.image_points(np.zeros(3))
     tall, wide = (
         half_m * float(size) for size in np.linalg.norm(frame.projection.matrix[:2, :3], axis=1)

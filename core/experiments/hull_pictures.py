@@ -51,20 +51,26 @@ class _Side:
         return image.reshape(self.shape)
 
 
-def sides_picture(hull: Surface, target: Target, *, name: str, what: str) -> Picture:
+TARGET_AXES = "target frame: x along-track, y opposite to the orbit normal, z to the geocentre"
+
+
+def sides_picture(
+    hull: Surface, target: Target | None, *, name: str, what: str, axes: str = TARGET_AXES
+) -> Picture:
     """Picture a hull from three sides, and the truth below it in the same scale.
 
     Args:
-        hull: its surface, which may be empty.
-        target: the truth.
+        hull: its surface, which may be empty where there is a truth.
+        target: the truth, None where its shape is not known.
         name: of the picture's file.
         what: the hull is of, for the caption.
+        axes: what they are, for the caption.
     """
-    bodies = {"hull": _mesh(hull), "truth": target.mesh()}
+    bodies = {"hull": _mesh(hull)} | ({} if target is None else {"truth": target.mesh()})
     sides = _sides(bodies)
 
     def draw(canvas: Canvas) -> None:
-        cells = canvas.subplots(2, 3, width_ratios=_widths(sides))
+        cells = canvas.subplots(len(bodies), 3, width_ratios=_widths(sides), squeeze=False)
         for row, (title, body) in zip(cells, bodies.items(), strict=True):
             for cell, side in zip(row, sides, strict=True):
                 where, shade = _shading(body, side)
@@ -73,10 +79,11 @@ def sides_picture(hull: Surface, target: Target, *, name: str, what: str) -> Pic
 
     return Picture(
         name=name,
-        caption=f"{what}: from three sides, above the hull and below the truth (metres, target "
-        "frame: x along-track, y opposite to the orbit normal, z to the geocentre).",
+        caption=f"{what}: from three sides"
+        + ("" if target is None else ", above the hull and below the truth")
+        + f" (metres, {axes}).",
         draw=draw,
-        size_in=(12.0, _height_in(sides, rows=2)),
+        size_in=(12.0, _height_in(sides, rows=len(bodies))),
     )
 
 

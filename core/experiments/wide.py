@@ -1,19 +1,24 @@
 """The paper's experiment A: a Tiangong-like target under views from all around."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.arrays import Floats
+from core.experiments.frame_pictures import OutlinedFrame, frames_picture
+from core.experiments.hull_pictures import error_pictures, sides_picture
+from core.experiments.pictures import Picture
 from core.experiments.results import Figure, Results, Table
+from core.experiments.study import Progress, Study
 from core.frame import Frame
 from core.geometry.grid import VoxelGrid
 from core.geometry.track import random_views_track
 from core.hull.shadow import CarvingRule, carving_view
 from core.hull.surface import Surface, hull_surface
 from core.hull.view import View
-from core.hull.volume import VoteVolume
+from core.hull.votes import VoteCounts
 from core.measurement.comparison import Agreement, voxel_agreement
 from core.measurement.lines import LineMeasurement, angle_between_lines_rad, principal_lines
 from core.parallel import in_order
@@ -25,14 +30,21 @@ from core.radar.waveform import Waveform
 from core.silhouettes.extraction import extract_silhouette
 from core.targets import LineFeature, Target, tiangong_like
 
-Progress = Callable[[str, int, int], None]
-
 WANTED = {
     "IoU, shadow rule": ">= 0.75",
     "span error, shadow rule": "<= 2 %",
     "length error, shadow rule": "<= 2 %",
     "diameter error, shadow rule": "<= 8 %",
 }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Carved:
+    """A hull, how it agrees with the truth, and its lines beside the target's features."""
+
+    agreement: Agreement
+    surface: Surface
+    lines: tuple[tuple[LineFeature, LineMeasurement | None], ...]
 
 
 def run_wide(
@@ -43,7 +55,7 @@ def run_wide(
     signal_to_noise_db: float = 20.0,
     seed: int = 1,
     progress: Progress = lambda _stage, _done, _total: None,
-) -> Results:
+) -> Study:
     """Simulate echoes, image them, extract silhouettes, carve by both rules, compare with truth.
 
     The truth enters only the last step; silhouettes come from the simulated echoes alone.
@@ -70,30 +82,30 @@ def run_wide(
         random=np.random.default_rng(seed),
         progress=progress,
     )
-    outlines = []
+    found = []
     for number, frame in enumerate(images, start=1):
-        silhouette = extract_silhouette(frame)
-        outlines.append(View(silhouette=silhouette, projection=frame.projection))
+        found.append(OutlinedFrame(frame=frame, silhouette=extract_silhouette(frame)))
         progress("silhouettes", number, len(images))
     grid = VoxelGrid.cube(side_m=21.0, spacing_m=spacing_m)
     truth = target.voxels(grid)
-    figures: list[Figure] = []
-    rows = []
-    for rule in ("shadow", "strict"):
-        agreement, surface = _carved(outlines, grid, truth, rule, progress)
-        figures += _figures(rule, agreement, surface, target)
-        rows.append(_row(rule, agreement, surface, target))
-    settings = {
-        "target": target.name,
-        "views": views,
-        "spacing_m": spacing_m,
-        "scatterers": scatterers,
-        "signal_to_noise_db": signal_to_noise_db,
-        "seed": seed,
-    }
-    return Results(
-        name="wide", settings=settings, figures=tuple(figures), tables=(_table(rows, target),)
+    rules: tuple[CarvingRule, ...] = ("shadow", "strict")
+    hulls = {rule: _carved(found, grid, truth, rule, target, progress) for rule in rules}
+    results = Results(
+        name="wide",
+        settings={
+            "target": target.name,
+            "views": views,
+            "spacing_m": spacing_m,
+            "scatterers": scatterers,
+            "signal_to_noise_db": signal_to_noise_db,
+            "seed": seed,
+        },
+        figures=tuple(each for rule, hull in hulls.items() for each in _figures(rule, hull)),
+        tables=(_table(hulls),),
+        finding=_finding(hulls["shadow"], hulls["strict"]),
     )
+    ours = hulls["shadow"].surface
+    return Study(results=results, pictures=_pictures(found, ours, target), hull=ours)
 
 
 def simulated_frames(
@@ -173,17 +185,24 @@ def _glinting(points: Scatterers, visible: float, random: np.random.Generator) -
 
 
 def _carved(
-    outlines: Sequence[View],
+    found: Sequence[OutlinedFrame],
     grid: VoxelGrid,
-    truth: np.ndarray[tuple[int, ...], np.dtype[np.bool_]],
+    truth: NDArray[np.bool_],
     rule: CarvingRule,
+    target: Target,
     progress: Progress,
-) -> tuple[Agreement, Surface]:
-    volume = VoteVolume(grid)
-    for number, view in enumerate(outlines, start=1):
+) -> _Carved:
+    volume = VoteCounts(grid)
+    for number, each in enumerate(found, start=1):
+        view = View(silhouette=each.silhouette, projection=each.frame.projection)
         volume.add(carving_view(view, rule))
-        progress(f"votes, {rule} rule", number, len(outlines))
-    return voxel_agreement(volume.hull(), truth), hull_surface(volume)
+        progress(f"votes, {rule} rule", number, len(found))
+    surface = hull_surface(volume)
+    return _Carved(
+        agreement=voxel_agreement(volume.hull(), truth),
+        surface=surface,
+        lines=tuple(_measured(surface, target)),
+    )
 
 
 def _measured(surface: Surface, target: Target) -> list[tuple[LineFeature, LineMeasurement | None]]:
@@ -195,18 +214,16 @@ def _measured(surface: Surface, target: Target) -> list[tuple[LineFeature, LineM
     return list(zip(features, principal_lines(surface, (first, second, third)), strict=True))
 
 
-def _figures(
-    rule: CarvingRule, agreement: Agreement, surface: Surface, target: Target
-) -> list[Figure]:
+def _figures(rule: CarvingRule, hull: _Carved) -> list[Figure]:
     named: list[tuple[str, float | None, str]] = [
-        ("IoU", agreement.intersection_over_union, ""),
-        ("coverage", agreement.coverage, ""),
+        ("IoU", hull.agreement.intersection_over_union, ""),
+        ("coverage", hull.agreement.coverage, ""),
     ]
-    for feature, line in _measured(surface, target):
+    for feature, line in hull.lines:
         error = angle = length = None
         if line is not None:
             length = line.length_m
-            error = abs(length - feature.length_m) / feature.length_m * 100
+            error = abs(_error_percent(line, feature))
             angle = float(np.rad2deg(angle_between_lines_rad(line.direction, feature.direction)))
         named += [
             (feature.name, length, "m"),
@@ -224,17 +241,15 @@ def _figures(
     ]
 
 
-def _row(
-    rule: CarvingRule, agreement: Agreement, surface: Surface, target: Target
-) -> tuple[str, ...]:
+def _row(rule: CarvingRule, hull: _Carved) -> tuple[str, ...]:
     lines = [
         "none" if line is None else f"{line.length_m:.2f}, {_error_percent(line, feature):+.1f} %"
-        for feature, line in _measured(surface, target)
+        for feature, line in hull.lines
     ]
     return (
         rule,
-        f"{agreement.intersection_over_union:.3f}",
-        f"{agreement.coverage:.3f}",
+        f"{hull.agreement.intersection_over_union:.3f}",
+        f"{hull.agreement.coverage:.3f}",
         *lines,
     )
 
@@ -243,11 +258,41 @@ def _error_percent(line: LineMeasurement, feature: LineFeature) -> float:
     return (line.length_m / feature.length_m - 1) * 100
 
 
-def _table(rows: list[tuple[str, ...]], target: Target) -> Table:
-    features = sorted(target.features, key=lambda feature: -feature.length_m)
+def _table(hulls: Mapping[CarvingRule, _Carved]) -> Table:
+    features = [feature for feature, _ in hulls["shadow"].lines]
     truth = ("truth", "1.000", "1.000", *(f"{feature.length_m:.2f}" for feature in features))
     return Table(
         title="Hull from simulated echoes against the truth",
         columns=("rule", "IoU", "coverage", *(f"{feature.name} (m)" for feature in features)),
-        rows=(*rows, truth),
+        rows=(*(_row(rule, hull) for rule, hull in hulls.items()), truth),
+    )
+
+
+def _finding(ours: _Carved, strict: _Carved) -> str:
+    errors = [
+        f"{feature.name} {_error_percent(line, feature):+.1f} %"
+        for feature, line in ours.lines
+        if line is not None
+    ]
+    return (
+        f"From all around, the shadow rule keeps {100 * ours.agreement.coverage:.1f} % of the "
+        f"target at an IoU of {ours.agreement.intersection_over_union:.3f} "
+        f"({', '.join(errors) if errors else 'nothing is left to measure'}); the paper's strict "
+        "rule, on the same outlines, carves the shaded sides away and keeps "
+        f"{100 * strict.agreement.coverage:.1f} % (IoU "
+        f"{strict.agreement.intersection_over_union:.3f})."
+    )
+
+
+def _pictures(found: Sequence[OutlinedFrame], ours: Surface, target: Target) -> tuple[Picture, ...]:
+    return (
+        frames_picture(
+            found,
+            target,
+            name="wide-frames",
+            caption="Radar frames from all around with the outlines found and the true ones: "
+            "range down, cross-range right, 45 dB of amplitude.",
+        ),
+        sides_picture(ours, target, name="wide-hull", what="Hull of the shadow rule"),
+        *error_pictures(ours, target, name="wide-errors", most_m=0.5),
     )

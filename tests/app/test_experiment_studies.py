@@ -1,5 +1,7 @@
+import inspect
 import json
 from functools import partial
+from typing import get_args
 
 import pytest
 import trimesh
@@ -38,3 +40,14 @@ def test_a_study_refuses_what_it_has_no_use_for(capsys):
     with pytest.raises(SystemExit):
         main(["experiment", "fusion", "--views", "5", "--data", "X"])
     assert "fusion experiment has no use for --views, --data" in capsys.readouterr().err
+
+
+def test_every_experiment_that_can_be_named_runs_and_reports_its_progress():
+    assert get_args(experiment.Experiment) == (*experiment.STUDIES, "all")
+    for run in experiment.STUDIES.values():
+        assert "progress" in inspect.signature(run).parameters
+
+
+def test_an_experiment_takes_the_options_that_its_signature_names():
+    taken = experiment._settings("wide", experiment.STUDIES["wide"], {"--views": 5, "--data": None})
+    assert taken == {"views": 5}

@@ -10,8 +10,9 @@ from core.experiments.measurement.key_points import key_points_part
 from core.experiments.measurement.pictures import coverage_picture
 from core.experiments.measurement.settings import MeasurementSettings
 from core.experiments.physics.part import Part, Progress
-from core.experiments.pictures import Picture
 from core.experiments.results import Results
+from core.experiments.study import Study
+from core.hull.surface import EMPTY_SURFACE
 
 PARTS = ("exact", "echoes", "coverage", "key-points")
 """Names of the parts, in the order in which they run."""
@@ -22,8 +23,10 @@ def run_measurement(
     parts: tuple[str, ...] = PARTS,
     settings: MeasurementSettings | None = None,
     progress: Progress = lambda _stage, _done, _total: None,
-) -> tuple[Results, tuple[Picture, ...]]:
+) -> Study:
     """Measure known targets, count how often intervals hold, and place key points.
+
+    Parts carve hulls of their own; none of them is what the whole is about.
 
     Args:
         parts: names out of `PARTS`.
@@ -45,7 +48,8 @@ def run_measurement(
         settings={"parts": list(parts)} | _plain(settings),
         figures=tuple(figure for part in found for figure in part.figures),
     )
-    return results, tuple(picture for part in found for picture in part.pictures)
+    pictures = tuple(picture for part in found for picture in part.pictures)
+    return Study(results=results, pictures=pictures, hull=EMPTY_SURFACE)
 
 
 def _plain(settings: MeasurementSettings) -> dict[str, object]:

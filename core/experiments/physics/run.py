@@ -12,8 +12,9 @@ from core.experiments.physics.optics import optics_part
 from core.experiments.physics.part import Part, Progress
 from core.experiments.physics.registration import registration_part
 from core.experiments.physics.scattering import scattering_part
-from core.experiments.pictures import Picture
 from core.experiments.results import Results
+from core.experiments.study import Study
+from core.hull.surface import EMPTY_SURFACE
 
 PARTS = ("scattering", "intervals", "imaging", "focusing", "near-field", "registration", "optics")
 """Names of the parts, in the order in which an echo meets them."""
@@ -22,14 +23,14 @@ PARTS = ("scattering", "intervals", "imaging", "focusing", "near-field", "regist
 def run_physics(
     *,
     parts: tuple[str, ...] = PARTS,
-    gotcha: Path | None = None,
+    data: Path | None = None,
     progress: Progress = lambda _stage, _done, _total: None,
-) -> tuple[Results, tuple[Picture, ...]]:
-    """Hold each part of the physics against theory and data, and return figures and pictures.
+) -> Study:
+    """Hold each part of the physics against theory and data; there is no hull.
 
     Args:
         parts: names out of `PARTS`.
-        gotcha: folder of the measured Gotcha history; without it nothing measured is focused.
+        data: folder of the measured Gotcha history; without it nothing measured is focused.
         progress: told of stage, steps done and steps in all.
 
     Raises:
@@ -40,14 +41,15 @@ def run_physics(
         raise ValueError(
             f'There is no part "{unknown[0]}" of the physics; take {", ".join(PARTS)}.'
         )
-    runs = _runs(gotcha)
+    runs = _runs(data)
     found = [runs[name](partial(_within, progress, name)) for name in parts]
     results = Results(
         name="physics",
-        settings={"parts": list(parts), "measured data": "none" if gotcha is None else "Gotcha"},
+        settings={"parts": list(parts), "measured data": "none" if data is None else "Gotcha"},
         figures=tuple(figure for part in found for figure in part.figures),
     )
-    return results, tuple(picture for part in found for picture in part.pictures)
+    pictures = tuple(picture for part in found for picture in part.pictures)
+    return Study(results=results, pictures=pictures, hull=EMPTY_SURFACE)
 
 
 def _runs(gotcha: Path | None) -> Mapping[str, Callable[[Progress], Part]]:

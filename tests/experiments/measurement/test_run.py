@@ -24,7 +24,8 @@ SMALL = MeasurementSettings(
     ("part", "counted", "pictures"), [("exact", 7, 1), ("echoes", 7, 2), ("key-points", 81, 1)]
 )
 def test_each_part_hands_out_its_figures_and_pictures(part, counted, pictures, tmp_path):
-    results, drawn = run_measurement(parts=(part,), settings=SMALL)
+    study = run_measurement(parts=(part,), settings=SMALL)
+    results, drawn = study.results, study.pictures
     assert len(results.figures) == counted
     assert len(write_pictures(drawn, tmp_path)) == pictures
     assert results.to_json()["settings"]["parts"] == [part]
@@ -34,7 +35,7 @@ def test_each_part_hands_out_its_figures_and_pictures(part, counted, pictures, t
 
 
 def test_key_points_err_as_their_covariance_says():
-    results, _ = run_measurement(parts=("key-points",), settings=SMALL)
+    results = run_measurement(parts=("key-points",), settings=SMALL).results
     ratios = [f.value for f in results.figures if "own covariance" in f.name]
     assert len(ratios) == 15
     # Each is the root of a mean of 60 χ² of three degrees: good to 0.05 or so.
