@@ -33,17 +33,26 @@ from core.experiments.report import write_report
 from core.experiments.results import Results
 from core.experiments.study import Study
 from core.experiments.temple import run_temple
+from core.experiments.threshold.run import run_threshold
 from core.experiments.wide import run_wide
 from core.formats.surfaces import write_surface
 
 Experiment = Literal[
-    "wide", "limited", "fusion", "factorization", "temple", "physics", "measurement"
+    "wide",
+    "limited",
+    "fusion",
+    "factorization",
+    "threshold",
+    "temple",
+    "physics",
+    "measurement",
 ]
 
 STUDIES: Mapping[str, Callable[..., Study]] = {
     "limited": run_limited,
     "fusion": run_fusion,
     "factorization": run_factorization,
+    "threshold": run_threshold,
 }
 """Experiments that hand out pictures and a hull too; they take a spacing, noise and a seed."""
 
@@ -67,7 +76,8 @@ def experiment(
     lengths, by the shadow rule and by the paper's strict rule. limited: the same target from one
     pass over Beijing, radar alone, and which directions stay unobserved. fusion: that pass with a
     telescope beside the radar. factorization: three lines of an MRO-like orbiter by factorization,
-    by energy accumulation and by our hull. temple: the hull of a real object from 16 calibrated
+    by energy accumulation and by our hull. threshold: silhouettes wrong in a few frames, and how
+    votes and blame repair the hull. temple: the hull of a real object from 16 calibrated
     photographs (Middlebury templeSparseRing). physics: scattering, coherent intervals, imaging,
     focusing, registration and optics against theory and measured data. measurement: lengths and
     attitude of two known targets from exact outlines and from echoes, how often intervals hold the

@@ -1,5 +1,6 @@
 """Pictures of a hull: from three sides beside the truth, and coloured by its errors."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,6 +25,8 @@ PIXELS = 260
 """Along the longer side of a picture."""
 
 MARGIN = 0.04
+
+FRAME = "metres, target frame: x along-track, y opposite to the orbit normal, z to the geocentre"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -60,11 +63,37 @@ def sides_picture(hull: Surface, target: Target, *, name: str, what: str) -> Pic
         name: of the picture's file.
         what: the hull is of, for the caption.
     """
-    bodies = {"hull": _mesh(hull), "truth": target.mesh()}
+    return _bodies_picture(
+        {"hull": _mesh(hull), "truth": target.mesh()},
+        name=name,
+        caption=f"{what}: from three sides, above the hull and below the truth ({FRAME}).",
+    )
+
+
+def rivals_picture(
+    hulls: Mapping[str, Surface], target: Target, *, name: str, what: str
+) -> Picture:
+    """Picture several hulls of one target from three sides, and the truth last, in one scale.
+
+    Args:
+        hulls: surfaces by what they are called; some may be empty, though not all.
+        target: the truth.
+        name: of the picture's file.
+        what: is compared, for the caption.
+    """
+    bodies = {title: _mesh(hull) for title, hull in hulls.items()}
+    return _bodies_picture(
+        {**bodies, "truth": target.mesh()},
+        name=name,
+        caption=f"{what}: from three sides, the truth at the bottom ({FRAME}).",
+    )
+
+
+def _bodies_picture(bodies: dict[str, trimesh.Trimesh], *, name: str, caption: str) -> Picture:
     sides = _sides(bodies)
 
     def draw(canvas: Canvas) -> None:
-        cells = canvas.subplots(2, 3, width_ratios=_widths(sides))
+        cells = canvas.subplots(len(bodies), 3, width_ratios=_widths(sides), squeeze=False)
         for row, (title, body) in zip(cells, bodies.items(), strict=True):
             for cell, side in zip(row, sides, strict=True):
                 where, shade = _shading(body, side)
@@ -73,10 +102,9 @@ def sides_picture(hull: Surface, target: Target, *, name: str, what: str) -> Pic
 
     return Picture(
         name=name,
-        caption=f"{what}: from three sides, above the hull and below the truth (metres, target "
-        "frame: x along-track, y opposite to the orbit normal, z to the geocentre).",
+        caption=caption,
         draw=draw,
-        size_in=(12.0, _height_in(sides, rows=2)),
+        size_in=(12.0, _height_in(sides, rows=len(bodies))),
     )
 
 
