@@ -33,6 +33,7 @@ from core.experiments.shadow import run_shadow
 from core.experiments.spin import run_spin
 from core.experiments.study import Study
 from core.experiments.temple import run_temple
+from core.experiments.threshold.run import run_threshold
 from core.experiments.wide import run_wide
 
 Experiment = Literal[
@@ -42,6 +43,7 @@ Experiment = Literal[
     "factorization",
     "shadow",
     "spin",
+    "threshold",
     "noise",
     "temple",
     "physics",
@@ -56,6 +58,7 @@ STUDIES: Mapping[str, Callable[..., Study]] = {
     "factorization": run_factorization,
     "shadow": run_shadow,
     "spin": run_spin,
+    "threshold": run_threshold,
     "noise": run_noise,
     "temple": run_temple,
     "physics": run_physics,
@@ -99,17 +102,17 @@ def experiment(
     lengths, by the shadow rule and by the paper's strict rule. limited: the same target from one
     pass over Beijing, radar alone, and which directions stay unobserved. fusion: that pass with a
     telescope beside the radar. factorization: three lines of an MRO-like orbiter by factorization,
-    by energy accumulation and by our hull. shadow: rules of voting on
-    targets that shadow themselves. spin: axis and rate of a spinning target seen by several
-    stations, and its hull. noise: accuracy against noise, resolution and number of
-    frames, one at a time. temple: the hull of a real object from 16 calibrated
-    photographs (Middlebury templeSparseRing). physics: scattering, coherent intervals, imaging,
-    focusing, registration and optics against theory and measured data. measurement: lengths and
-    attitude of two known targets from exact outlines and from echoes, how often intervals hold the
-    truth, and key points against noise (some five minutes). all: every one of these in
-    turn with its own settings, each into its own folder of --out, with a page index.html that tells
-    what each found and links its report, and one results.json; one that fails does not stop the
-    others, and the exit code is then 1.
+    by energy accumulation and by our hull. shadow: rules of voting on targets that shadow
+    themselves. spin: axis and rate of a spinning target seen by several stations, and its hull.
+    threshold: silhouettes wrong in some frames, and what repairs the hull. noise: accuracy against
+    noise, resolution and number of frames, one at a time. temple: the hull of a real object from 16
+    calibrated photographs (Middlebury templeSparseRing). physics: scattering, coherent intervals,
+    imaging, focusing, registration and optics against theory and measured data. measurement:
+    lengths and attitude of two known targets from exact outlines and from echoes, how often
+    intervals hold the truth, and key points against noise (some five minutes). all: every one of
+    these in turn with its own settings, each into its own folder of --out, with a page index.html
+    that tells what each found and links its report, and one results.json; one that fails does not
+    stop the others, and the exit code is then 1.
 
     Args:
         name: which experiment.

@@ -1,5 +1,6 @@
 """Pictures of a hull: from three sides beside the truth, and coloured by its errors."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -67,6 +68,31 @@ def sides_picture(
         axes: what they are, for the caption.
     """
     bodies = {"hull": _mesh(hull)} | ({} if target is None else {"truth": target.mesh()})
+    beside = "" if target is None else ", above the hull and below the truth"
+    caption = f"{what}: from three sides{beside} (metres, {axes})."
+    return _bodies_picture(bodies, name=name, caption=caption)
+
+
+def rivals_picture(
+    hulls: Mapping[str, Surface], target: Target, *, name: str, what: str
+) -> Picture:
+    """Picture several hulls of one target from three sides, and the truth last, in one scale.
+
+    Args:
+        hulls: surfaces by what they are called; some may be empty, though not all.
+        target: the truth.
+        name: of the picture's file.
+        what: is compared, for the caption.
+    """
+    bodies = {title: _mesh(hull) for title, hull in hulls.items()}
+    return _bodies_picture(
+        {**bodies, "truth": target.mesh()},
+        name=name,
+        caption=f"{what}: from three sides, the truth at the bottom (metres, {TARGET_AXES}).",
+    )
+
+
+def _bodies_picture(bodies: dict[str, trimesh.Trimesh], *, name: str, caption: str) -> Picture:
     sides = _sides(bodies)
 
     def draw(canvas: Canvas) -> None:
@@ -79,9 +105,7 @@ def sides_picture(
 
     return Picture(
         name=name,
-        caption=f"{what}: from three sides"
-        + ("" if target is None else ", above the hull and below the truth")
-        + f" (metres, {axes}).",
+        caption=caption,
         draw=draw,
         size_in=(12.0, _height_in(sides, rows=len(bodies))),
     )

@@ -1,0 +1,1 @@
+"""Wrong silhouettes in a sequence, and how votes and blame repair the hull."""
