@@ -9,9 +9,13 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from core.arrays import Floats
 from core.geometry.grid import VoxelGrid
+from core.geometry.projection import Projection
 from core.geometry.track import LineOfSightTrack
+from core.hull.shadow import filled_away_from_radar
+from core.hull.view import View
 from core.measurement.observability import Observability
 from core.radar.intervals import CoherentInterval
+from core.silhouettes.silhouette import Silhouette
 
 SUPPORT = 1.5
 """Voxels within which a cell's nearest voxels count as what returned its first echo."""
@@ -41,6 +45,19 @@ def predicted_aspects(
         k = track.line_of_sight[interval.middle]
         aspects.append(Aspect(line_of_sight=k, cross_range=across))
     return tuple(aspects)
+
+
+def predicted_view(aspect: Aspect) -> View:
+    """Return a view of a ball's lit side, to ask of it which directions a pass would observe."""
+    matrix = np.zeros((2, 4))
+    matrix[:, :3] = aspect.line_of_sight, aspect.cross_range
+    matrix[:, 3] = 4.0
+    square = Silhouette(
+        rings=(np.array([[2.0, 2.0], [2.0, 6.0], [6.0, 6.0], [6.0, 2.0]]),),
+        image_shape=(9, 9),
+        claim="lit side",
+    )
+    return View(silhouette=filled_away_from_radar(square), projection=Projection(matrix=matrix))
 
 
 def hull_points_m(inside: NDArray[np.bool_], grid: VoxelGrid) -> Floats:
