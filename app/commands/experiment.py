@@ -28,6 +28,7 @@ from core.experiments.fusion import run_fusion
 from core.experiments.limited import run_limited
 from core.experiments.measurement.run import run_measurement
 from core.experiments.noise import run_noise
+from core.experiments.passes import run_passes
 from core.experiments.physics.run import run_physics
 from core.experiments.shadow import run_shadow
 from core.experiments.spin import run_spin
@@ -44,6 +45,7 @@ Experiment = Literal[
     "shadow",
     "spin",
     "threshold",
+    "passes",
     "noise",
     "temple",
     "physics",
@@ -59,6 +61,7 @@ STUDIES: Mapping[str, Callable[..., Study]] = {
     "shadow": run_shadow,
     "spin": run_spin,
     "threshold": run_threshold,
+    "passes": run_passes,
     "noise": run_noise,
     "temple": run_temple,
     "physics": run_physics,
@@ -104,15 +107,16 @@ def experiment(
     telescope beside the radar. factorization: three lines of an MRO-like orbiter by factorization,
     by energy accumulation and by our hull. shadow: rules of voting on targets that shadow
     themselves. spin: axis and rate of a spinning target seen by several stations, and its hull.
-    threshold: silhouettes wrong in some frames, and what repairs the hull. noise: accuracy against
-    noise, resolution and number of frames, one at a time. temple: the hull of a real object from 16
-    calibrated photographs (Middlebury templeSparseRing). physics: scattering, coherent intervals,
-    imaging, focusing, registration and optics against theory and measured data. measurement:
-    lengths and attitude of two known targets from exact outlines and from echoes, how often
-    intervals hold the truth, and key points against noise (some five minutes). all: every one of
-    these in turn with its own settings, each into its own folder of --out, with a page index.html
-    that tells what each found and links its report, and one results.json; one that fails does not
-    stop the others, and the exit code is then 1.
+    threshold: silhouettes wrong in some frames, and what repairs the hull. passes: how the hull
+    falls with passes and stations, and the best next pass, predicted and then confirmed. noise:
+    accuracy against noise, resolution and number of frames, one at a time. temple: the hull of a
+    real object from 16 calibrated photographs (Middlebury templeSparseRing). physics: scattering,
+    coherent intervals, imaging, focusing, registration and optics against theory and measured data.
+    measurement: lengths and attitude of two known targets from exact outlines and from echoes, how
+    often intervals hold the truth, and key points against noise (some five minutes). all: every one
+    of these in turn with its own settings, each into its own folder of --out, with a page
+    index.html that tells what each found and links its report, and one results.json; one that fails
+    does not stop the others, and the exit code is then 1.
 
     Args:
         name: which experiment.
