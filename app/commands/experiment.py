@@ -24,6 +24,7 @@ from app.commands.outputs import (
 )
 from core.experiments.factorization import run_factorization
 from core.experiments.fusion import run_fusion
+from core.experiments.human import run_human
 from core.experiments.limited import run_limited
 from core.experiments.measurement.run import PARTS as MEASUREMENT_PARTS
 from core.experiments.measurement.run import run_measurement
@@ -37,13 +38,14 @@ from core.experiments.wide import run_wide
 from core.formats.surfaces import write_surface
 
 Experiment = Literal[
-    "wide", "limited", "fusion", "factorization", "temple", "physics", "measurement"
+    "wide", "limited", "fusion", "factorization", "human", "temple", "physics", "measurement"
 ]
 
 STUDIES: Mapping[str, Callable[..., Study]] = {
     "limited": run_limited,
     "fusion": run_fusion,
     "factorization": run_factorization,
+    "human": run_human,
 }
 """Experiments that hand out pictures and a hull too; they take a spacing, noise and a seed."""
 
@@ -67,7 +69,8 @@ def experiment(
     lengths, by the shadow rule and by the paper's strict rule. limited: the same target from one
     pass over Beijing, radar alone, and which directions stay unobserved. fusion: that pass with a
     telescope beside the radar. factorization: three lines of an MRO-like orbiter by factorization,
-    by energy accumulation and by our hull. temple: the hull of a real object from 16 calibrated
+    by energy accumulation and by our hull. human: a person with a knife from near-field echoes all
+    around, bare and under a cover. temple: the hull of a real object from 16 calibrated
     photographs (Middlebury templeSparseRing). physics: scattering, coherent intervals, imaging,
     focusing, registration and optics against theory and measured data. measurement: lengths and
     attitude of two known targets from exact outlines and from echoes, how often intervals hold the
@@ -81,8 +84,8 @@ def experiment(
             not temple; physics and measurement have no hull).
         part: parts of the physics or the measurement to run, all by default.
         views: number of views (wide only; 80 by default).
-        spacing_m: voxel spacing in metres; 0.15, or 0.2 (factorization) or 0.0005 (temple) by
-            default.
+        spacing_m: voxel spacing in metres; 0.15, or 0.2 (factorization), 0.01 (human) or 0.0005
+            (temple) by default.
         snr_db: signal-to-noise ratio per pulse and frequency sample (not temple, not physics; 20 dB
             by default).
         seed: of the random generator (not temple, not physics; 1 by default).
