@@ -25,6 +25,7 @@ from app.commands.outputs import (
 )
 from core.experiments.factorization import run_factorization
 from core.experiments.fusion import run_fusion
+from core.experiments.human import run_human
 from core.experiments.limited import run_limited
 from core.experiments.measurement.run import run_measurement
 from core.experiments.noise import run_noise
@@ -46,6 +47,7 @@ Experiment = Literal[
     "spin",
     "threshold",
     "passes",
+    "human",
     "noise",
     "temple",
     "physics",
@@ -62,6 +64,7 @@ STUDIES: Mapping[str, Callable[..., Study]] = {
     "spin": run_spin,
     "threshold": run_threshold,
     "passes": run_passes,
+    "human": run_human,
     "noise": run_noise,
     "temple": run_temple,
     "physics": run_physics,
