@@ -1,42 +1,44 @@
 """The paper's experiment D: a person with a knife, seen in the near field from all around."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-
 import numpy as np
 
 from core.experiments.hull_pictures import error_pictures
 from core.experiments.human_knife import BrightPartSettings, bright_part
 from core.experiments.human_measures import (
     MAY_MISS,
-    PersonHull,
-    PersonMeasures,
     person_hull,
     true_measures,
 )
+from core.experiments.human_outlined import Outlined
 from core.experiments.human_pictures import person_frames_picture, person_sides_picture
+from core.experiments.human_results import (
+    CLEAN,
+    COVERED,
+    PLANE,
+    STRICT,
+    TRUE,
+    directions_table,
+    figures_of,
+    finding_of,
+    people_table,
+)
 from core.experiments.human_scene import (
     COVER_DB,
     COVER_NOISE_DB,
     KNIFE_DB,
     RANGE_M,
     Scene,
-    curved_view,
     scene_frames,
     true_outlines,
 )
-from core.experiments.results import Figure, Results, Table
+from core.experiments.results import Results
 from core.experiments.study import Progress, Study
 from core.frame import Frame
 from core.geometry.grid import VoxelGrid
 from core.hull.distance_hull import CurvedView
-from core.hull.shadow import CarvingRule, carving_view
-from core.hull.view import View
 from core.human_body import standing_person
-from core.measurement.observability import observability
 from core.radar.circular_sar import NearFieldSettings
 from core.silhouettes.extraction import ExtractionSettings, extract_silhouette
-from core.silhouettes.silhouette import Silhouette
 
 HALF_BOX_M = (0.32, 0.38, 1.05)
 """Half sides of the grid, which holds any person of ordinary size."""
@@ -44,43 +46,6 @@ HALF_BOX_M = (0.32, 0.38, 1.05)
 USUAL_PIXEL_M = 0.005
 """A resolution cell has 5 × 5 of these pixels: gaps and specks have more of them than in the
 usual frame."""
-
-CLEAN, STRICT, COVERED, PLANE, TRUE = (
-    "shadow rule",
-    "strict rule",
-    "under a cover",
-    "as if waves were plane",
-    "true outlines",
-)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Outlined:
-    """Frames with the silhouettes of the whole and of the knife, empty where it is not seen."""
-
-    frames: Sequence[Frame]
-    body: Sequence[Silhouette]
-    knife: Sequence[Silhouette]
-
-    def body_views(self, rule: CarvingRule) -> list[CurvedView]:
-        """Return what votes for the body."""
-        return [curved_view(f, _voting(s, f, rule).silhouette) for f, s in self._seen(self.body)]
-
-    def knife_views(self) -> list[CurvedView]:
-        """Return what votes for the knife: only frames that show it, and as they show it.
-
-        What is as thin as a blade does not shade itself: its lit side is all of it. Filled away
-        from the radar, outlines of frames from the front alone would reach into the body.
-        """
-        return [curved_view(f, s) for f, s in self._seen(self.knife)]
-
-    def votes(self, outlines: Sequence[Silhouette], rule: CarvingRule) -> list[View]:
-        """Return views, as if far away, that say which directions are constrained."""
-        return [_voting(s, f, rule) for f, s in self._seen(outlines)]
-
-    def _seen(self, outlines: Sequence[Silhouette]) -> list[tuple[Frame, Silhouette]]:
-        pairs = zip(self.frames, outlines, strict=True)
-        return [(frame, outline) for frame, outline in pairs if not outline.is_empty]
 
 
 def run_human(
@@ -163,9 +128,9 @@ def run_human(
             "signal_to_noise_db": signal_to_noise_db,
             "seed": seed,
         },
-        figures=tuple(_figures(hulls, seen, real)),
-        tables=(_table(hulls, real), _directions_table(seen[CLEAN])),
-        finding=_finding(hulls, seen, real),
+        figures=tuple(figures_of(hulls, seen, real)),
+        tables=(people_table(hulls, real), directions_table(seen[CLEAN])),
+        finding=finding_of(hulls, seen, real),
     )
     pictures = (
         person_frames_picture(
@@ -188,148 +153,9 @@ def _outlined(frames: list[Frame], pixel_m: float) -> Outlined:
     return Outlined(frames=frames, body=body, knife=knife)
 
 
-def _voting(silhouette: Silhouette, frame: Frame, rule: CarvingRule) -> View:
-    return carving_view(View(silhouette=silhouette, projection=frame.projection), rule)
-
-
 def _as_if_far(seen: Outlined) -> list[CurvedView]:
     """Return the body's views with the affine projection, which forgets that range is curved."""
     return [
         CurvedView(silhouette=view.silhouette, image_points=view.projection.image_points)
         for view in seen.votes(seen.body, "shadow")
     ]
-
-
-def _errors(found: PersonMeasures, real: PersonMeasures) -> dict[str, tuple[float | None, str]]:
-    """Return every measure's error by its name, with its unit."""
-
-    def less(one: float | None, two: float | None) -> float | None:
-        return None if one is None or two is None else 1e3 * (one - two)
-
-    offset, true_offset = found.knife_offset_m(), real.knife_offset_m()
-    off = None
-    if offset is not None and true_offset is not None:
-        off = 1e3 * float(np.linalg.norm(offset - true_offset))
-    return {
-        "height error": (less(found.height_m, real.height_m), "mm"),
-        "shoulder width error": (less(found.shoulder_m, real.shoulder_m), "mm"),
-        "knife length error": (less(found.knife_m, real.knife_m), "mm"),
-        "knife direction error": (found.knife_angle_deg(real), "°"),
-        "knife height above the feet, error": (
-            less(found.knife_height_m(), real.knife_height_m()),
-            "mm",
-        ),
-        "knife offset from the axis, error": (off, "mm"),
-    }
-
-
-def _figures(
-    hulls: Mapping[str, PersonHull], seen: Mapping[str, Outlined], real: PersonMeasures
-) -> list[Figure]:
-    figures = []
-    for name, hull in hulls.items():
-        agreement = hull.agreement
-        figures += [
-            Figure(name=f"{name}: IoU", value=agreement.intersection_over_union),
-            Figure(name=f"{name}: coverage", value=agreement.coverage),
-        ]
-        for what, (value, unit) in _errors(hull.measures, real).items():
-            if name in (CLEAN, COVERED, TRUE) or not what.startswith("knife"):
-                figures.append(Figure(name=f"{name}: {what}", value=value, unit=unit))
-    for name, each in seen.items():
-        shown = sum(not outline.is_empty for outline in each.knife)
-        figures.append(Figure(name=f"{name}: frames with a bright part", value=shown))
-    return figures
-
-
-def _table(hulls: Mapping[str, PersonHull], real: PersonMeasures) -> Table:
-    rows = [("truth", "1.000", "1.000", *_cells(real))]
-    for name, hull in hulls.items():
-        shares = (hull.agreement.intersection_over_union, hull.agreement.coverage)
-        rows.append((name, *(f"{share:.3f}" for share in shares), *_cells(hull.measures)))
-    return Table(
-        title="A person and a knife against the truth",
-        columns=(
-            "outlines",
-            "IoU",
-            "coverage",
-            "height (m)",
-            "shoulders (m)",
-            "knife (m)",
-            "its direction",
-            "above the feet (m)",
-            "off the axis, x and y (m)",
-        ),
-        rows=tuple(rows),
-    )
-
-
-def _cells(measures: PersonMeasures) -> tuple[str, ...]:
-    lengths = (measures.height_m, measures.shoulder_m, measures.knife_m, measures.knife_height_m())
-    height, shoulder, knife, above = ("" if v is None else f"{v:.3f}" for v in lengths)
-    direction, offset = measures.knife_direction, measures.knife_offset_m()
-    return (
-        height,
-        shoulder,
-        knife,
-        "" if direction is None else _vector(direction * (1 if direction[1] >= 0 else -1)),
-        above,
-        "" if offset is None else _vector(offset),
-    )
-
-
-def _vector(values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
-    return f"({', '.join(f'{value:+.3f}' for value in values)})"
-
-
-def _directions_table(seen: Outlined) -> Table:
-    above = [frame.line_of_sight[2] > 0 for frame in seen.frames]
-    votes = seen.votes(seen.body, "shadow")
-    only_above = [view for view, is_above in zip(votes, above, strict=False) if is_above]
-    rows: list[tuple[str, ...]] = []
-    for name, views in (
-        ("body, both circles", votes),
-        ("body, circle above alone", only_above),
-        ("knife, frames that show it", seen.votes(seen.knife, "strict")),
-    ):
-        if not views:
-            rows.append((name, "no views", "no views", "no views"))
-            continue
-        constrained = observability(views)
-        rows.append(
-            (
-                name,
-                *(
-                    f"{constrained.grade(axis)} ({constrained.dilution(axis):.2f})"
-                    for axis in np.eye(3)
-                ),
-            )
-        )
-    return Table(
-        title="Directions: grade and dilution",
-        columns=("views", "x forward", "y right", "z down"),
-        rows=tuple(rows),
-    )
-
-
-def _finding(
-    hulls: Mapping[str, PersonHull], seen: Mapping[str, Outlined], real: PersonMeasures
-) -> str:
-    parts = []
-    for name, title in ((CLEAN, "Bare"), (COVERED, f"Under {COVER_DB:g} dB of cover")):
-        errors = _errors(hulls[name].measures, real)
-        texts = [
-            f"{what} {'none, it was not found' if value is None else f'{value:+.1f} {unit}'}"
-            for what, (value, unit) in errors.items()
-        ]
-        shown = sum(not outline.is_empty for outline in seen[name].knife)
-        parts.append(
-            f"{title}: IoU {hulls[name].agreement.intersection_over_union:.3f}, "
-            f"{', '.join(texts)}, a bright part in {shown} of {len(seen[name].frames)} frames."
-        )
-    strict, floor = hulls[STRICT].agreement, hulls[TRUE].agreement
-    return (
-        f"{' '.join(parts)} The strict rule keeps {100 * strict.coverage:.0f} % of the body; true "
-        f"outlines give IoU {floor.intersection_over_union:.3f}. One circle from above leaves the "
-        "soles unobserved under the shadow rule, so that a circle below is needed for a height."
-    )

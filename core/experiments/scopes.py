@@ -11,7 +11,6 @@ from core.experiments.frame_pictures import OutlinedFrame
 from core.experiments.mro_scene import echo_frames
 from core.experiments.study import Progress
 from core.experiments.wide import simulated_frames
-from core.frame import Frame
 from core.geometry.grid import VoxelGrid
 from core.silhouettes.extraction import extract_silhouette
 from core.targets import LineFeature, Target, mro_like, tiangong_like
@@ -39,7 +38,7 @@ class Scene:
 
     def within(self, scope: str, most: int) -> list[OutlinedFrame]:
         """Return the first frames whose line of sight is in a scope."""
-        inside = [each for each in self.found if SCOPES[scope](_look(each.frame))]
+        inside = [each for each in self.found if SCOPES[scope](each.frame.line_of_sight)]
         return inside[:most]
 
     def grid(self) -> VoxelGrid:
@@ -134,9 +133,3 @@ def scene(
         spacing_m=2 * spacing_m if is_large else spacing_m,
         found=tuple(each for each in found if not each.silhouette.is_empty),
     )
-
-
-def _look(frame: Frame) -> Floats:
-    if frame.line_of_sight is None:
-        raise ValueError(f"Frame {frame.label!r} has no line of sight.")
-    return frame.line_of_sight

@@ -45,6 +45,7 @@ def test_the_soles_need_a_circle_below(study):
     both, above, _ = directions.rows
     assert both[3].startswith("good")
     assert above[3].startswith("unobserved")
+    assert "heights are good, from the circle above alone unobserved" in study.results.finding
 
 
 def test_pictures_and_hull_come_out(study, tmp_path):
